@@ -1,0 +1,29 @@
+# holdfast_module(NAME PATH folder [DEPENDS module...] [LINK target...] [PRIVATE_LINK target...])
+# Every .cpp of the folder becomes part of the static library holdfast_NAME.
+function(holdfast_module name)
+  cmake_parse_arguments(ARG "" "PATH" "DEPENDS;LINK;PRIVATE_LINK" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${ARG_PATH}/*.cpp)
+  list(TRANSFORM ARG_DEPENDS PREPEND holdfast_)
+  if(sources)
+    add_library(holdfast_${name} STATIC ${sources})
+    target_link_libraries(holdfast_${name} PUBLIC holdfast_flags ${ARG_DEPENDS} ${ARG_LINK}
+      PRIVATE ${ARG_PRIVATE_LINK})
+  else()
+    add_library(holdfast_${name} INTERFACE)
+    target_link_libraries(holdfast_${name} INTERFACE holdfast_flags ${ARG_DEPENDS} ${ARG_LINK})
+  endif()
+endfunction()
+
+# holdfast_test(NAME LINK target...): all tests/NAME/*_test.cpp in one program NAME_tests.
+function(holdfast_test name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(${name}_tests ${sources})
+  target_link_libraries(${name}_tests PRIVATE ${ARG_LINK} GTest::gtest GTest::gmock
+    GTest::gtest_main)
+  gtest_discover_tests(${name}_tests DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${name}
+    TIMEOUT 600)
+endfunction()
