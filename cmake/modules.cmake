@@ -1,8 +1,8 @@
 # holdfast_module(NAME PATH folder [DEPENDS module...] [LINK target...] [PRIVATE_LINK target...])
-# Every .cpp of the folder becomes part of the static library holdfast_NAME.
+# Every .cpp of the folder and its sub-folders becomes part of the static library holdfast_NAME.
 function(holdfast_module name)
   cmake_parse_arguments(ARG "" "PATH" "DEPENDS;LINK;PRIVATE_LINK" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${ARG_PATH}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${ARG_PATH}/*.cpp)
   list(TRANSFORM ARG_DEPENDS PREPEND holdfast_)
   if(sources)
     add_library(holdfast_${name} STATIC ${sources})
@@ -14,10 +14,10 @@ function(holdfast_module name)
   endif()
 endfunction()
 
-# holdfast_test(NAME LINK target...): all tests/NAME/*_test.cpp in one program NAME_tests.
+# holdfast_test(NAME LINK target...): all .cpp below tests/NAME in one program NAME_tests.
 function(holdfast_test name)
   cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(NOT sources)
     return()
   endif()
