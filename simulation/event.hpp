@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "holdfast/core/result.hpp"
+#include "holdfast/core/se3.hpp"
+
+namespace holdfast::simulation {
+
+/// What happens to the robot during a simulated drive.
+enum class EventKind {
+  kBlind,        ///< no ray returns during the interval: empty clouds
+  kImuBiasJump,  ///< both IMU biases jump by fixed sizes in a direction drawn per seed, and stay
+  kKidnap,       ///< the body stands at another place of the route at once; the IMU feels nothing
+};
+
+/// An event that was asked for; times count from the start of the log.
+struct EventSpec {
+  EventKind kind = EventKind::kBlind;
+  TimeNs start = 0;
+  TimeNs duration = 0;  ///< zero for events that happen at an instant
+};
+
+/// An event that took place; times are absolute.
+struct SimulatedEvent {
+  EventKind kind = EventKind::kBlind;
+  TimeNs t0 = 0;
+  TimeNs t1 = 0;
+  SE3 pose_before;                                            ///< T_map_body at t0, before a kidnap
+  SE3 pose_after;                                             ///< T_map_body at t0, after a kidnap
+  Eigen::Vector3d gyro_step_rad_s = Eigen::Vector3d::Zero();  ///< of an imu_bias_jump
+  Eigen::Vector3d accel_step_m_s2 = Eigen::Vector3d::Zero();  ///< of an imu_bias_jump
+};
+
+/// Name on the command line and in events.jsonl: "blind", "imu_bias_jump", "kidnap".
+std::string_view event_name(EventKind kind);
+
+/// Names of all events, in the order of EventKind.
+std::vector<std::string_view> event_names();
+
+/// Parses `NAME@T0[+DURATION]`, seconds from the start of the log. `blind` without a duration lasts
+/// 2 s; the others happen at T0 and take no duration. The error lists the known names or shows the
+/// form expected.
+Result<EventSpec> parse_event(const std::string& text);
+
+/// One line of events.jsonl, without the end of line: t0 and t1 in seconds with 9 decimals, the
+/// name, and what belongs to the kind (poses and size of a kidnap, steps of a bias jump).
+std::string event_json(const SimulatedEvent& event);
+
+}  // namespace holdfast::simulation

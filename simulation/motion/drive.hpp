@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "simulation/motion/route.hpp"
+#include "simulation/motion/trajectory.hpp"
+
+namespace holdfast::simulation {
+
+/// How a robot drives along a route.
+struct DriveStyle {
+  double speed_m_s = 1.2;          ///< nominal; each drive varies it by up to 10 % as it goes
+  double acceleration_m_s2 = 0.6;  ///< along the way, speeding up and braking
+  double yaw_rate_rad_s = 1.0;     ///< slows down in turns to keep within this
+  double lateral_m_s2 = 1.5;       ///< and within this
+  double rest_s = 2.0;             ///< standing still at the start
+  double distance_m = 100.0;       ///< where the drive ends when no duration is given
+  double body_height_m = 0.45;     ///< of the IMU above the ground
+  double weave_m = 0.08;           ///< amplitude of slow deviations to the side
+  double sway_rad = 0.003;         ///< amplitude of roll and pitch oscillation at nominal speed
+  double heave_m = 0.002;          ///< amplitude of vertical oscillation at nominal speed
+};
+
+/// An instant change of the pose.
+struct Teleport {
+  TimeNs t = 0;
+  SE3 before;  ///< T_map_body
+  SE3 after;
+};
+
+/// The true motion of the body over a log; times count from the start of the log.
+class Drive {
+ public:
+  /// Plans a drive that differs by seed in start, direction, line, speed and oscillation. At each
+  /// of the (ascending) `kidnaps` the body stands at another place of the route, >= 3 m or >= 45
+  /// degrees away, with the same tilt, body-frame velocity and acceleration, so that an IMU notices
+  /// nothing.
+  static Drive plan(const Route& route, const DriveStyle& style, std::uint64_t seed,
+                    std::optional<TimeNs> duration, const std::vector<TimeNs>& kidnaps);
+
+  /// Motion at `t`, clamped to [0, duration()]; at a teleport the motion after it.
+  MotionState at(TimeNs t) const;
+  TimeNs duration() const { return duration_; }
+  const std::vector<Teleport>& teleports() const { return teleports_; }
+
+ private:
+  Drive() = default;
+  std::vector<Trajectory> pieces_;  ///< one more than teleports
+  std::vector<Teleport> teleports_;
+  TimeNs duration_ = 0;
+};
+
+}  // namespace holdfast::simulation

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace holdfast::simulation {
+
+/// A corner of a route, rounded by an arc.
+struct RouteCorner {
+  Eigen::Vector3d position;  ///< on the ground
+  double radius_m = 1.0;     ///< of the rounding; shortened where the neighbours are too close
+};
+
+/// A closed way over the ground: straights and arcs, tangent to each other. Heights change linearly
+/// along each piece. `s` is the length gone, in metres; any real number, the way goes round.
+class Route {
+ public:
+  /// At least 3 corners; successive ones differ in x or y.
+  static Route closed(const std::vector<RouteCorner>& corners);
+  /// The same with one radius.
+  static Route closed(const std::vector<Eigen::Vector2d>& corners, double radius_m);
+
+  struct Place {
+    Eigen::Vector3d position;
+    double heading = 0;    ///< rad, continuous in s (grows by the loop's turning each round)
+    double curvature = 0;  ///< 1/m, positive to the left
+  };
+  Place at(double s) const;
+  double length() const { return length_; }
+  Route reversed() const;
+
+ private:
+  struct Piece {
+    double s;
+    double length;
+    Eigen::Vector3d begin;
+    double rise;  ///< over the whole piece
+    double heading;
+    double curvature;
+  };
+  void append(Piece piece);
+
+  std::vector<RouteCorner> corners_;
+  std::vector<Piece> pieces_;
+  double length_ = 0;
+  double turning_ = 0;  ///< of one round, rad
+};
+
+}  // namespace holdfast::simulation

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "holdfast/core/result.hpp"
+#include "simulation/motion/drive.hpp"
+#include "simulation/motion/route.hpp"
+#include "simulation/world/walkers.hpp"
+#include "simulation/world/world.hpp"
+
+namespace holdfast::simulation {
+
+/// A world, the way a robot takes through it, and who else walks there. One file each in
+/// simulation/scenarios; a new one is declared in scenario.cpp.
+struct Scenario {
+  std::string name;
+  World world;
+  Route route;
+  DriveStyle style;
+  std::vector<WalkerPlan> walkers;
+};
+
+/// An entry of the list of scenarios.
+struct ScenarioInfo {
+  std::string_view name;
+  std::string_view summary;  ///< one line
+  Scenario (*make)();
+};
+
+/// All scenarios, in the order in which `holdfast simulate --list` shows them.
+std::span<const ScenarioInfo> scenarios();
+
+/// Builds a scenario. The error lists the known names.
+Result<Scenario> make_scenario(std::string_view name);
+
+}  // namespace holdfast::simulation

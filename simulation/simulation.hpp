@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/result.hpp"
+#include "holdfast/core/sensor_data.hpp"
+#include "holdfast/io/point_cloud.hpp"
+#include "simulation/event.hpp"
+#include "simulation/scenario.hpp"
+#include "simulation/sensors/imu_model.hpp"
+#include "simulation/sensors/lidar_model.hpp"
+
+namespace holdfast::simulation {
+
+struct SimulationOptions {
+  std::string scenario = "corridor";
+  std::uint64_t seed = 1;            ///< another drive, other noise, in the same world
+  std::optional<double> duration_s;  ///< length of the log; none: the scenario's whole route
+  std::vector<EventSpec> events;
+  ImuModel imu;
+  LidarModel lidar = LidarModel::rs16();
+  int threads = 1;  ///< the stream has the same bits for any number
+};
+
+/// The exact state behind the measurements.
+struct TrueState {
+  TimeNs t = 0;
+  SE3 T_map_body;
+  Eigen::Vector3d v_map = Eigen::Vector3d::Zero();       ///< m/s
+  Eigen::Vector3d a_map = Eigen::Vector3d::Zero();       ///< m/s^2, without gravity
+  Eigen::Vector3d omega_body = Eigen::Vector3d::Zero();  ///< rad/s
+  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();   ///< rad/s
+  Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();  ///< m/s^2
+};
+
+/// A robot that drives through a world, as a stream of sensor events in order of end time (IMU
+/// before scan at equal times), together with the truth. The IMU begins at start_time() and covers
+/// the end of the last scan. Same scenario, options and seed: same bits, for any number of threads.
+/// Not thread-safe; uses its own worker threads.
+class Simulation : public SensorSource {
+ public:
+  /// Errors: unknown scenario (with the list of known ones), an event outside the log, models that
+  /// make no sense (no beams, a rate that does not divide a second).
+  static Result<std::unique_ptr<Simulation>> create(const SimulationOptions& options);
+
+  /// A world of one's own; options.scenario is ignored.
+  static Result<std::unique_ptr<Simulation>> create(Scenario scenario,
+                                                    const SimulationOptions& options);
+
+  ~Simulation() override;
+
+  /// Never an Error.
+  Result<std::optional<SensorEvent>> next() override;
+  double progress() const override;
+
+  TimeNs start_time() const;
+  TimeNs end_time() const;  ///< time of the last IMU sample
+  std::size_t scan_count() const;
+
+  /// T_map_body at `t`, clamped to the log; at a teleport the pose after it.
+  SE3 truth_at(TimeNs t) const;
+  /// Likewise with derivatives and biases (those of the last IMU sample not after `t`).
+  TrueState state_at(TimeNs t) const;
+  /// T_map_body at the IMU's times; at a teleport two poses with one stamp, before and after.
+  std::vector<StampedPose> truth() const;
+  /// T_map_body at the first scan's pose time (its last point). Casts that scan if next() has not.
+  SE3 initial_pose();
+
+  const std::vector<SimulatedEvent>& events() const;
+  const SimulationOptions& options() const;
+  const Scenario& scenario() const;
+
+  /// The static world as a surveyor sees it: points about 6 cm apart with 5 mm noise on each axis,
+  /// on surfaces that the LiDAR can see from the route. Takes a moment (visibility is ray-cast).
+  io::PointCloud survey_map();
+
+ private:
+  struct Parts;
+  explicit Simulation(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace holdfast::simulation
