@@ -14,9 +14,11 @@ function(holdfast_module name)
   endif()
 endfunction()
 
-# holdfast_test(NAME LINK target...): all .cpp below tests/NAME in one program NAME_tests.
+# holdfast_test(NAME [INTEGRATION] LINK target...): all .cpp below tests/NAME in one program NAME_tests.
+# Label unit-NAME and target unit_tests (which the sanitizers run), or integration.
+add_custom_target(unit_tests)
 function(holdfast_test name)
-  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(ARG "INTEGRATION" "" "LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(NOT sources)
     return()
@@ -24,6 +26,12 @@ function(holdfast_test name)
   add_executable(${name}_tests ${sources})
   target_link_libraries(${name}_tests PRIVATE ${ARG_LINK} GTest::gtest GTest::gmock
     GTest::gtest_main)
-  gtest_discover_tests(${name}_tests DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${name}
+  if(ARG_INTEGRATION)
+    set(label integration)
+  else()
+    set(label unit-${name})
+    add_dependencies(unit_tests ${name}_tests)
+  endif()
+  gtest_discover_tests(${name}_tests DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${label}
     TIMEOUT 600)
 endfunction()
