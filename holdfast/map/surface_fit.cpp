@@ -1,0 +1,242 @@
+#include "holdfast/map/surface_fit.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace holdfast::map {
+namespace {
+
+/// Sums of a set of points, relative to `base` so that nothing cancels.
+struct Moments {
+  int count = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d outer = Eigen::Matrix3d::Zero();
+
+  void add(const Eigen::Vector3d& d) {
+    ++count;
+    sum += d;
+    outer.noalias() += d * d.transpose();
+  }
+};
+
+/// Centroid and principal axes; eigenvalues ascending, in m^2.
+struct Principal {
+  Eigen::Vector3d centroid;
+  Eigen::Vector3d values;
+  Eigen::Matrix3d axes;
+};
+
+Principal principal_of(const Moments& m) {
+  const Eigen::Vector3d mean = m.sum / m.count;
+  const Eigen::Matrix3d covariance = m.outer / m.count - mean * mean.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);
+  return {mean, solver.eigenvalues().cwiseMax(0.0), solver.eigenvectors()};
+}
+
+struct Plane {
+  Eigen::Vector3d point;   ///< relative to the neighbourhood's centre
+  Eigen::Vector3d normal;
+  double sigma_m;
+  double spread_m;  ///< RMS extent along the shorter of its two axes
+  int support;
+};
+
+using Offsets = std::vector<Eigen::Vector3d>;
+
+std::optional<Plane> plane_through(const Moments& m, int min_support) {
+  if (m.count < min_support) return std::nullopt;
+  const Principal p = principal_of(m);
+  // n - 3 degrees of freedom are left after a plane is fitted.
+  const double unbias = static_cast<double>(m.count) / std::max(m.count - 3, 1);
+  return Plane{p.centroid, p.axes.col(0), std::sqrt(p.values[0] * unbias), std::sqrt(p.values[1]),
+               m.count};
+}
+
+Moments near_plane(const Offsets& points, const Plane& plane, double band_m) {
+  Moments m;
+  for (const auto& d : points) {
+    if (std::abs(plane.normal.dot(d - plane.point)) < band_m) m.add(d);
+  }
+  return m;
+}
+
+/// The plane of all points, then of those within 3 sigma of it.
+std::optional<Plane> robust_plane(const Offsets& points, const FitOptions& options) {
+  Moments all;
+  for (const auto& d : points) all.add(d);
+  const auto first = plane_through(all, options.min_support);
+  if (!first) return first;
+  const double band = 3.0 * std::max(first->sigma_m, options.noise_m);
+  return plane_through(near_plane(points, *first, band), options.min_support);
+}
+
+/// A plane is believed where its thickness is explained by the map's noise and is small against its
+/// extent.
+bool is_flat(const Plane& plane, const FitOptions& options) {
+  return plane.sigma_m < 2.0 * options.noise_m && plane.spread_m > 4.0 * plane.sigma_m;
+}
+
+Offsets within(const Offsets& points, double radius) {
+  Offsets near;
+  for (const auto& d : points) {
+    if (d.squaredNorm() < radius * radius) near.push_back(d);
+  }
+  return near;
+}
+
+/// The cell's own points and those of its neighbourhood, relative to the centroid of the own ones.
+struct Neighbourhood {
+  Eigen::Vector3d center;
+  Offsets own;
+  Offsets all;  ///< within the wide radius
+};
+
+Neighbourhood gather(const PointGrid& grid, const Cell& cell, const FitOptions& options) {
+  Neighbourhood n;
+  const auto own = grid.points(cell);
+  n.center.setZero();
+  for (const auto& p : own) n.center += p.cast<double>();
+  n.center /= static_cast<double>(own.size());
+  for (const auto& p : own) n.own.push_back(p.cast<double>() - n.center);
+  const double radius = options.wide_radius * grid.cell_m();
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
+  const Cell low = grid.cell_of((n.center - reach).cast<float>());
+  const Cell high = grid.cell_of((n.center + reach).cast<float>());
+  for (int z = low.z(); z <= high.z(); ++z) {
+    for (int y = low.y(); y <= high.y(); ++y) {
+      for (int x = low.x(); x <= high.x(); ++x) {
+        for (const auto& p : grid.points({x, y, z})) {
+          const Eigen::Vector3d d = p.cast<double>() - n.center;
+          if (d.squaredNorm() < radius * radius) n.all.push_back(d);
+        }
+      }
+    }
+  }
+  return n;
+}
+
+Surface surface_of(const Plane& plane, const Eigen::Vector3d& center) {
+  // The centre lies on the plane at the foot of the perpendicular from the cell's centroid.
+  const Eigen::Vector3d foot = plane.normal * plane.normal.dot(plane.point);
+  return {(center + foot).cast<float>(), plane.normal.cast<float>(),
+          static_cast<float>(plane.sigma_m),
+          static_cast<std::uint16_t>(std::min(plane.support, 65535)), SurfaceKind::kPlane, 0};
+}
+
+/// The widest neighbourhood that is one plane.
+std::optional<Plane> single_plane(const Neighbourhood& n, double cell_m,
+                                  const FitOptions& options) {
+  const auto wide = robust_plane(n.all, options);
+  if (!wide) return std::nullopt;
+  const auto narrow = robust_plane(within(n.all, options.narrow_radius * cell_m), options);
+  if (!narrow) return is_flat(*wide, options) ? wide : std::nullopt;
+  const bool wide_is_as_flat =
+      is_flat(*wide, options) && 4 * wide->support > 3 * static_cast<int>(n.all.size()) &&
+      wide->sigma_m < 1.2 * narrow->sigma_m + 0.1 * options.noise_m;
+  if (wide_is_as_flat) return wide;
+  if (is_flat(*narrow, options) && narrow->support > static_cast<int>(n.own.size())) return narrow;
+  return std::nullopt;
+}
+
+/// Does the plane explain at least half of the cell's own points?
+bool explains(const Plane& plane, const Offsets& own, const FitOptions& options) {
+  const Moments m = near_plane(own, plane, 3.0 * options.noise_m);
+  return 2 * m.count >= static_cast<int>(own.size());
+}
+
+/// The plane through three spread points of `points` that has most points near it; a fixed set of
+/// triples, so that the same map always gives the same fits.
+std::optional<Plane> best_of_triples(const Offsets& own, const Offsets& all,
+                                     const FitOptions& options) {
+  constexpr int kTriples = 24;
+  const auto n = own.size();
+  std::optional<Plane> best;
+  for (int k = 0; k < kTriples; ++k) {
+    const Eigen::Vector3d& a = own[(k * 7 + 1) % n];
+    const Eigen::Vector3d& b = all[(k * 31 + 5) % all.size()];
+    const Eigen::Vector3d& c = own[(k * 13 + n / 2) % n];
+    const Eigen::Vector3d cross = (b - a).cross(c - a);
+    if (cross.norm() < 20.0 * options.noise_m * options.noise_m) continue;
+    const Plane candidate{a, cross.normalized(), 0, 0, 0};
+    const Moments near = near_plane(all, candidate, 2.5 * options.noise_m);
+    if (!best || near.count > best->support) {
+      best = candidate;
+      best->support = near.count;
+    }
+  }
+  return best;
+}
+
+void remove_near(Offsets& points, const Plane& plane, double band_m) {
+  std::erase_if(points, [&](const Eigen::Vector3d& d) {
+    return std::abs(plane.normal.dot(d - plane.point)) < band_m;
+  });
+}
+
+/// Edges, corners and thin walls: planes one after the other, each from the points that the ones
+/// before left over.
+void several_planes(const Neighbourhood& n, double cell_m, const FitOptions& options,
+                    std::vector<Surface>& out) {
+  constexpr int kMostPlanes = 3;
+  Offsets own = n.own;
+  Offsets all = within(n.all, 1.4 * options.narrow_radius * cell_m);
+  for (int k = 0; k < kMostPlanes && own.size() >= 3; ++k) {
+    const auto seed = best_of_triples(own, all, options);
+    if (!seed) return;
+    auto plane = plane_through(near_plane(all, *seed, 3.0 * options.noise_m), options.min_support);
+    if (!plane) return;
+    plane = plane_through(near_plane(all, *plane, 3.0 * options.noise_m), options.min_support);
+    if (!plane || !is_flat(*plane, options)) return;
+    if (near_plane(own, *plane, 3.0 * options.noise_m).count < 3) return;
+    out.push_back(surface_of(*plane, n.center));
+    remove_near(own, *plane, 3.5 * options.noise_m);
+    remove_near(all, *plane, 3.5 * options.noise_m);
+  }
+}
+
+void line_through(const Neighbourhood& n, double cell_m, const FitOptions& options,
+                  std::vector<Surface>& out) {
+  Moments m;
+  for (const auto& d : n.all) m.add(d);
+  if (m.count < options.min_support) return;
+  const Principal p = principal_of(m);
+  const double sigma = std::sqrt(p.values[1]);
+  const bool straight = p.values[2] > 16.0 * p.values[1] && sigma < 0.15 * cell_m + options.noise_m;
+  if (!straight) return;
+  const Eigen::Vector3d direction = p.axes.col(2);
+  const Eigen::Vector3d foot = p.centroid - direction * direction.dot(p.centroid);
+  out.push_back({(n.center + foot).cast<float>(), direction.cast<float>(),
+                 static_cast<float>(sigma),
+                 static_cast<std::uint16_t>(std::min(m.count, 65535)), SurfaceKind::kLine, 0});
+}
+
+}  // namespace
+
+void fit_cell(const PointGrid& grid, const Cell& cell, const FitOptions& options,
+              std::vector<Surface>& out) {
+  const Neighbourhood n = gather(grid, cell, options);
+  const std::size_t first = out.size();
+  if (options.planes) {
+    const auto plane = single_plane(n, grid.cell_m(), options);
+    if (plane && explains(*plane, n.own, options)) {
+      out.push_back(surface_of(*plane, n.center));
+    } else if (n.all.size() >= static_cast<std::size_t>(options.min_support)) {
+      several_planes(n, grid.cell_m(), options, out);
+    }
+  }
+  if (options.lines && out.size() == first) line_through(n, grid.cell_m(), options, out);
+  for (std::size_t i = first; i + 1 < out.size(); ++i) out[i].more = 1;
+}
+
+double plane_thickness(const PointGrid& grid, const Cell& cell, const FitOptions& options) {
+  const Neighbourhood n = gather(grid, cell, options);
+  Moments m;
+  for (const auto& d : n.all) m.add(d);
+  const auto plane = plane_through(m, 2 * options.min_support);
+  return plane ? plane->sigma_m : -1.0;
+}
+
+}  // namespace holdfast::map

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "holdfast/core/fields.hpp"
+#include "holdfast/core/sensor_data.hpp"
+
+namespace holdfast::preprocess {
+
+struct ScanSelectionConfig {
+  double min_range_m = 0.7;
+  double max_range_m = 150.0;
+  int max_points = 8000;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("min_range_m", self.min_range_m,
+          FieldDoc{"nearer returns are dropped (the robot itself)", 0.0, 100.0});
+    visit("max_range_m", self.max_range_m, FieldDoc{"farther returns are dropped", 1.0, 1000.0});
+    visit("max_points", self.max_points,
+          FieldDoc{"points of a scan that are matched with the map, spread over the whole scan", 100,
+                   1000000});
+  }
+};
+
+/// Chooses the points of a scan to work with: indices in ascending order into `scan.points`. Where
+/// there are more than `max_points`, one of each run of neighbours is taken at a place drawn anew for
+/// each run and `scan_number` (same number, same choice), so that no beam of a regular pattern is
+/// favoured. Returns the number of points inside the limits of range. `out` keeps its memory.
+std::size_t select_points(const Scan& scan, const ScanSelectionConfig& config,
+                          std::uint64_t scan_number, std::vector<std::uint32_t>& out);
+
+}  // namespace holdfast::preprocess

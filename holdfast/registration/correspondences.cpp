@@ -1,0 +1,111 @@
+#include "holdfast/registration/correspondences.hpp"
+
+#include <cmath>
+#include <numeric>
+
+namespace holdfast::registration {
+namespace {
+
+constexpr std::size_t kChunk = 1024;
+
+/// The nearest plane among those of one cell.
+struct Choice {
+  const map::Surface* surface = nullptr;
+  Eigen::Vector3f corner = Eigen::Vector3f::Zero();
+  float distance = 0;  ///< signed, m
+};
+
+Choice nearest_plane(const map::PriorMap& map, int level, const Eigen::Vector3f& p, float gate) {
+  Choice best;
+  const map::PriorMap::Hit hit = map.find(level, p);
+  if (hit.surface == nullptr) return best;
+  const Eigen::Vector3f in_tile = p - hit.corner;
+  float least = gate;
+  for (const map::Surface* s = hit.surface;; ++s) {
+    if (s->kind == map::SurfaceKind::kPlane) {
+      const float distance = s->normal.dot(in_tile - s->center);
+      if (std::abs(distance) < least) {
+        least = std::abs(distance);
+        best = {s, hit.corner, distance};
+      }
+    }
+    if (s->more == 0) return best;
+  }
+}
+
+/// What associating a range of points needs, in float.
+struct Query {
+  const map::PriorMap& map;
+  const AssociationOptions& options;
+  Eigen::Matrix3f R;
+  Eigen::Vector3f t;
+  Eigen::Vector3f p_lidar;  ///< relative to the anchor
+
+  Choice choose(const Eigen::Vector3f& p) const {
+    Choice choice = nearest_plane(map, options.level, p, options.gate_m);
+    if (choice.surface == nullptr && options.coarser_if_none &&
+        options.level + 1 < map::kLevels) {
+      choice = nearest_plane(map, options.level + 1, p, options.gate_m);
+    }
+    return choice;
+  }
+
+  /// 1 / variance of the distance of `p` to the plane.
+  float information(const Eigen::Vector3f& p, const map::Surface& s) const {
+    const Eigen::Vector3f ray = p - p_lidar;
+    const float cosine_sq = std::pow(s.normal.dot(ray), 2.0F) / ray.squaredNorm();
+    return 1.0F / (options.range_sigma_m * options.range_sigma_m * cosine_sq +
+                   s.sigma_m * s.sigma_m + options.surface_sigma_m * options.surface_sigma_m);
+  }
+};
+
+std::size_t associate_range(const Query& query, const BodyPoints& points, std::size_t begin,
+                            std::size_t end, Correspondences& out) {
+  std::size_t matches = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Eigen::Vector3f& q = points.points[i];
+    const Eigen::Vector3f p = query.R * q + query.t;
+    const Choice choice = query.choose(p);
+    out.px[i] = q.x();
+    out.py[i] = q.y();
+    out.pz[i] = q.z();
+    out.age_s[i] = points.age_s[i];
+    if (choice.surface == nullptr) {
+      out.nx[i] = out.ny[i] = out.nz[i] = out.offset[i] = out.information[i] = 0;
+      continue;
+    }
+    const Eigen::Vector3f& n = choice.surface->normal;
+    out.nx[i] = n.x();
+    out.ny[i] = n.y();
+    out.nz[i] = n.z();
+    out.offset[i] = n.dot(choice.surface->center + choice.corner);
+    out.information[i] = query.information(p, *choice.surface);
+    ++matches;
+  }
+  return matches;
+}
+
+}  // namespace
+
+void Correspondences::resize(std::size_t n) {
+  for (auto* column : {&px, &py, &pz, &nx, &ny, &nz, &offset, &information, &age_s}) {
+    column->resize(n);
+  }
+}
+
+std::size_t associate(const map::PriorMap& map, const SE3& T_anchor_body,
+                      const Eigen::Vector3d& p_body_lidar, const BodyPoints& points,
+                      const AssociationOptions& options, WorkerPool& pool, Correspondences& out) {
+  out.resize(points.size());
+  const Query query{map, options, T_anchor_body.rotation.toRotationMatrix().cast<float>(),
+                    T_anchor_body.translation.cast<float>(),
+                    (T_anchor_body * p_body_lidar).cast<float>()};
+  std::vector<std::size_t> matches(chunk_count(points.size(), kChunk));
+  for_each_chunk(pool, points.size(), kChunk,
+                 [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+                   matches[chunk] = associate_range(query, points, begin, end, out);
+                 });
+  return std::accumulate(matches.begin(), matches.end(), std::size_t{0});
+}
+
+}  // namespace holdfast::registration
