@@ -15,7 +15,8 @@ esac
 
 missing_packages() {
   local wanted installed
-  wanted=$(sed 's/#.*//' scripts/packages.txt | awk -v groups="^($groups)\$" '$1 ~ groups {print $2}')
+  wanted=$(sed 's/#.*//' scripts/packages.txt |
+    awk -v groups="^($groups)\$" '$1 ~ groups {print $2}')
   # dpkg-query fails when it does not know one of them, and still lists the others.
   installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' $wanted 2>/dev/null |
     awk '$1 == "installed" {print $2}' || true)

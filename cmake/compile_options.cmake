@@ -1,6 +1,6 @@
-# Flags of every target live in one interface target, so that a sanitizer or an architecture is set in one place.
-set(HOLDFAST_MARCH "x86-64-v3" CACHE STRING "value of -march on x86-64 (empty: the compiler's default)")
-set(HOLDFAST_SANITIZE "" CACHE STRING "sanitizers, as given to -fsanitize (e.g. address,undefined)")
+# Flags of every target live in one interface target, so that each is set in one place.
+set(HOLDFAST_MARCH "x86-64-v3" CACHE STRING "-march on x86-64 (empty: the compiler's default)")
+set(HOLDFAST_SANITIZE "" CACHE STRING "sanitizers, as -fsanitize takes them (address,undefined)")
 
 add_library(holdfast_flags INTERFACE)
 target_include_directories(holdfast_flags INTERFACE ${CMAKE_SOURCE_DIR})

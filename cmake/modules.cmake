@@ -14,7 +14,7 @@ function(holdfast_module name)
   endif()
 endfunction()
 
-# holdfast_test(NAME [INTEGRATION] LINK target...): all .cpp below tests/NAME in one program NAME_tests.
+# holdfast_test(NAME [INTEGRATION] LINK target...): all .cpp below tests/NAME, as NAME_tests.
 # Label unit-NAME and target unit_tests (which the sanitizers run), or integration.
 add_custom_target(unit_tests)
 function(holdfast_test name)

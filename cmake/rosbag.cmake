@@ -1,5 +1,5 @@
-# Debian's rosbag headers pull in headers of ROS 2 packages that nest one folder deeper than they are
-# included; this file is the only place that knows.
+# Debian's rosbag headers pull in headers of ROS 2 packages that nest one folder deeper than they
+# are included; this file is the only place that knows.
 find_package(Boost REQUIRED COMPONENTS filesystem)
 find_library(ROSBAG_STORAGE_LIBRARY rosbag_storage REQUIRED)
 find_library(ROSTIME_LIBRARY rostime REQUIRED)

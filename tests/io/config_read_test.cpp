@@ -2,10 +2,8 @@
 
 #include "tests/io/config_example.hpp"
 
-namespace holdfast::io {
+namespace holdfast::io::testing {
 namespace {
-
-using namespace testing;
 
 struct ReadExample : ::testing::Test {
   Status read(std::string_view text) {
@@ -191,4 +189,4 @@ TEST(CheckRequired, NamesTheKeysThatNothingHasSet) {
 }
 
 }  // namespace
-}  // namespace holdfast::io
+}  // namespace holdfast::io::testing

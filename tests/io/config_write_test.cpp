@@ -1,19 +1,20 @@
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <limits>
 
 #include "holdfast/core/random.hpp"
 #include "tests/io/config_example.hpp"
 
-namespace holdfast::io {
+namespace holdfast::io::testing {
 namespace {
 
-using namespace testing;
-
 /// Same bits, which tells -0 from 0.
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
 
 ExampleConfig written_and_read(ExampleConfig& config) {
   ExampleConfig copy;
@@ -191,4 +192,4 @@ TEST(ConfigReference, IsATableAModuleWithDefaultRangeAndMeaning) {
 }
 
 }  // namespace
-}  // namespace holdfast::io
+}  // namespace holdfast::io::testing
