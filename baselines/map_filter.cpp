@@ -1,0 +1,178 @@
+#include "baselines/map_filter.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace holdfast::baselines {
+namespace {
+
+using registration::kPosition;
+using registration::kRotation;
+
+constexpr double kMapRadiusM = 150.0;  // tiles farther than this are not needed
+constexpr int kScansToConfirm = 2;
+constexpr TimeNs kImuMemory = 2 * kSecond;
+
+/// Directions in which this scan alone determines the position worse than `sigma`, the rotation being
+/// free: eigenvectors of the Schur complement of the rotation.
+std::vector<Eigen::Vector3d> weak_directions(const registration::Matrix9d& H, double sigma) {
+  const Eigen::Matrix3d pr = H.block<3, 3>(kPosition, kRotation);
+  const Eigen::Matrix3d rr = H.block<3, 3>(kRotation, kRotation);
+  const Eigen::Matrix3d information =
+      H.block<3, 3>(kPosition, kPosition) - pr * rr.ldlt().solve(pr.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information);
+  std::vector<Eigen::Vector3d> weak;
+  for (int i = 0; i < 3; ++i) {
+    if (solver.eigenvalues()[i] < 1.0 / (sigma * sigma)) weak.push_back(solver.eigenvectors().col(i));
+  }
+  return weak;
+}
+
+double largest_sigma(const Matrix15d& P, int offset) {
+  const Eigen::Matrix3d block = P.block<3, 3>(offset, offset);
+  return std::sqrt(std::max(
+      0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block, Eigen::EigenvaluesOnly)
+               .eigenvalues()[2]));
+}
+
+}  // namespace
+
+MapFilter::MapFilter(map::PriorMap map, const Setup& setup, const SE3& T_map_body)
+    : map_(std::move(map)), setup_(setup), pool_(setup.threads) {
+  state_.T_map_body = T_map_body;
+  scan_.T_body_lidar = setup.T_body_lidar;
+}
+
+UpdateOptions MapFilter::options() const {
+  UpdateOptions o;
+  o.association.gate_m = static_cast<float>(setup_.filter.gate_m);
+  o.association.range_sigma_m = static_cast<float>(setup_.range_sigma_m);
+  o.association.surface_sigma_m = static_cast<float>(setup_.filter.surface_sigma_m);
+  o.robust_scale = setup_.filter.robust_scale;
+  // The map's own error over the extent of a scan: a share of its noise; its lever arm is 10 m.
+  o.map_sigma_m = 0.2 * map_.info().noise_m;
+  o.map_sigma_rad = 0.1 * o.map_sigma_m;
+  return o;
+}
+
+StepReport MapFilter::add_scan(const Scan& scan) {
+  StepReport report;
+  report.stamp = scan.stamp;
+  report.pose_time = scan.end_time;
+  {
+    StageClock clock(report.times);
+    step(scan, clock, report);
+    clock.book(Stage::kHealth);
+  }
+  ++scan_number_;
+  return report;
+}
+
+void MapFilter::step(const Scan& scan, StageClock& clock, StepReport& report) {
+  if (started_ && scan.end_time <= state_.t) {
+    report.state = State::kDeadReckoning;
+    report.reason = "scan is not later than the one before";
+    report.T_map_body = state_.T_map_body;
+    return;
+  }
+  if (imu_.empty()) {
+    report.reason = "no IMU yet";
+    return;
+  }
+  scan_.scan = &scan;
+  preprocess::select_points(scan, setup_.selection, scan_number_, scan_.selected);
+  imu_.segment(scan.stamp, scan.end_time, scan_.imu);
+  if (const auto focused = map_.focus(state_.T_map_body.translation, kMapRadiusM); !focused) {
+    report.state = State::kLost;
+    report.reason = focused.error().message;
+    return;
+  }
+  if (started_) {
+    track(clock, report);
+  } else {
+    start(report);
+  }
+  imu_.drop_before(scan.end_time - kImuMemory);
+}
+
+void MapFilter::start(StepReport& report) {
+  report.imu_held_ns = scan_.imu.held_ns;
+  if (scan_.selected.empty()) {
+    report.reason = "no returns yet";
+    return;
+  }
+  const InitialAlignment aligned =
+      align_initially(map_, scan_, state_, setup_.start, map_.info().gravity_map, options(), pool_,
+                      work_);
+  report.inlier_share = aligned.inlier_share;
+  if (!aligned.found || aligned.inlier_share < setup_.filter.min_inlier_share) {
+    report.reason = "the scan does not fit the map near the initial pose";
+    return;
+  }
+  state_ = aligned.state;
+  state_.t = report.pose_time;
+  started_ = true;
+  confirmed_ = 1;
+  report.reason = "first scan aligned";
+}
+
+bool MapFilter::predict(TimeNs to, StepReport& report) {
+  if (!imu_.segment(state_.t, to, segment_)) return false;
+  report.imu_held_ns = segment_.held_ns;
+  propagate(state_, segment_, map_.info().gravity_map, setup_.imu);
+  return true;
+}
+
+void MapFilter::track(StageClock& clock, StepReport& report) {
+  predict(report.pose_time, report);
+  clock.book(Stage::kPredict);
+  UpdateResult update;
+  if (!scan_.selected.empty()) {
+    const FilterState predicted = state_;
+    UpdateOptions how = options();
+    // After dead reckoning the planes asked must reach as far as the pose may be off.
+    const double sigma = largest_sigma(state_.P, FilterState::kP);
+    how.association.gate_m = std::max(how.association.gate_m, static_cast<float>(3.0 * sigma));
+    how.association.level = sigma > 0.3 ? 2 : sigma > 0.1 ? 1 : 0;
+    update = update_with_scan(map_, scan_, map_.info().gravity_map, how, pool_, work_, state_,
+                              &clock);
+    const double share = update.equations.weight / static_cast<double>(scan_.selected.size());
+    update.usable = update.usable && share >= setup_.filter.min_inlier_share;
+    if (!update.usable) state_ = predicted;
+  }
+  describe(update, report);
+  judge(update, report);
+}
+
+void MapFilter::describe(const UpdateResult& update, StepReport& report) const {
+  const auto& e = update.equations;
+  report.T_map_body = state_.T_map_body;
+  report.matches = static_cast<int>(e.pairs);
+  report.inlier_share =
+      scan_.selected.empty() ? 0.0 : e.weight / static_cast<double>(scan_.selected.size());
+  report.mean_abs_residual_m = e.weight > 0 ? e.abs_residual / e.weight : 0.0;
+  report.sigma_trans_m = largest_sigma(state_.P, FilterState::kP);
+  report.sigma_rot_rad = largest_sigma(state_.P, FilterState::kR);
+  if (update.usable) report.weak_directions = weak_directions(e.H, setup_.filter.weak_sigma_m);
+}
+
+void MapFilter::judge(const UpdateResult& update, StepReport& report) {
+  confirmed_ += update.usable ? 1 : 0;
+  if (confirmed_ < kScansToConfirm) {
+    report.state = State::kInitializing;
+    report.reason = "waiting for a second scan that agrees";
+  } else if (report.sigma_trans_m > setup_.filter.lost_sigma_m) {
+    report.state = State::kLost;
+    report.reason = "too long without a scan that fits the map";
+  } else if (!update.usable) {
+    report.state = State::kDeadReckoning;
+    report.reason = scan_.selected.empty() ? "no returns" : "the scan does not fit the map";
+  } else if (!report.weak_directions.empty()) {
+    report.state = State::kDegraded;
+    report.reason = "the scene does not determine every direction";
+  } else {
+    report.state = State::kTracking;
+  }
+}
+
+}  // namespace holdfast::baselines

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vector>
+
+#include "baselines/filter_state.hpp"
+#include "holdfast/core/parallel.hpp"
+#include "holdfast/core/stage_clock.hpp"
+#include "holdfast/map/prior_map.hpp"
+#include "holdfast/preprocess/deskew.hpp"
+#include "holdfast/registration/normal_equations.hpp"
+
+namespace holdfast::baselines {
+
+/// A scan that is ready to be matched: which points, and the readings that its motion follows from.
+struct SelectedScan {
+  const Scan* scan = nullptr;
+  std::vector<std::uint32_t> selected;  ///< indices into scan->points
+  preprocess::ImuSegment imu;           ///< covers [stamp, end_time]
+  SE3 T_body_lidar;
+};
+
+/// How one pass over a scan is done.
+struct UpdateOptions {
+  registration::AssociationOptions association;
+  double robust_scale = 3.0;     ///< of the Geman-McClure loss, in sigmas
+  int max_iterations = 6;
+  double map_sigma_m = 0.001;    ///< error of the map common to a whole scan, position
+  double map_sigma_rad = 0.0001; ///< and rotation
+};
+
+/// What an update found.
+struct UpdateResult {
+  registration::NormalEquations equations;  ///< at the last linearisation
+  int iterations = 0;
+  bool usable = false;  ///< enough agreeing pairs to have updated the state
+};
+
+/// Buffers that keep their memory from scan to scan.
+struct UpdateWorkspace {
+  preprocess::ScanMotion motion;
+  registration::BodyPoints points;
+  registration::Correspondences pairs;
+  std::vector<registration::NormalEquations> partials;
+};
+
+/// Iterated update of `state` (a prediction at the scan's end) with one scan: Gauss-Newton on the
+/// prior and all point-to-plane residuals. The residuals depend on the velocity too, since it moved
+/// the points during the scan; so a single scan tells the velocity of a robot that starts on the
+/// move. The map's own error is common to all points of a scan: a pose offset with `map_sigma` is
+/// marginalised out, which caps the information however many points there are.
+UpdateResult update_with_scan(const map::PriorMap& map, const SelectedScan& scan,
+                              const Eigen::Vector3d& gravity, const UpdateOptions& options,
+                              WorkerPool& pool, UpdateWorkspace& work, FilterState& state,
+                              StageClock* clock);
+
+}  // namespace holdfast::baselines

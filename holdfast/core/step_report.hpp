@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "holdfast/core/se3.hpp"
+
+namespace holdfast {
+
+/// What the system says of itself after each scan.
+enum class State : std::uint8_t {
+  kInitializing,   ///< not yet known where; nothing is claimed
+  kTracking,       ///< pose known in all directions
+  kDegraded,       ///< pose known, but not in the directions named
+  kDeadReckoning,  ///< no usable scan; IMU (and odometry) carry the pose on
+  kUnmapped,       ///< outside of the map; odometry carries the pose on
+  kSuspect,        ///< something disagrees; the pose may be wrong
+  kLost,           ///< not known where; nothing is claimed
+  kRelocalizing,   ///< searching; nothing is claimed
+};
+
+/// "TRACKING", "DEGRADED", ...: the words of the files.
+std::string_view to_string(State state);
+
+/// True in the states in which a line of trajectory.tum is written.
+constexpr bool claims_pose(State state) {
+  return state != State::kInitializing && state != State::kLost && state != State::kRelocalizing;
+}
+
+/// The work of a step, in order. Names of the ms_ columns of steps.csv.
+enum class Stage : std::uint8_t { kPredict, kDeskew, kAssociate, kSolve, kHealth };
+constexpr std::array<std::string_view, 5> kStageNames = {"predict", "deskew", "associate", "solve",
+                                                         "health"};
+
+/// Thread CPU time of one step, ms.
+struct StageTimes {
+  std::array<double, kStageNames.size()> ms{};
+  double total_ms = 0;
+  double wall_ms = 0;
+};
+
+/// What came of one scan.
+struct StepReport {
+  TimeNs stamp = 0;      ///< time of the scan's first point
+  TimeNs pose_time = 0;  ///< time of its last point
+  State state = State::kInitializing;
+  std::string reason;    ///< why this state, in a few words; empty for plain TRACKING
+  SE3 T_map_body;        ///< at pose_time; meaningful where claims_pose(state)
+  double p_wrong = -1;   ///< probability that the pose is wrong; < 0: not estimated
+  int matches = 0;       ///< points paired with a surface of the map
+  double inlier_share = 0;        ///< share of the selected points that agree with the map
+  double mean_abs_residual_m = 0; ///< mean distance of the agreeing points to their surfaces
+  std::vector<Eigen::Vector3d> weak_directions;  ///< unit vectors in the map frame
+  double sigma_trans_m = 0;  ///< largest standard deviation of the position, any direction
+  double sigma_rot_rad = 0;  ///< likewise of the rotation
+  int odom_epoch = 0;
+  TimeNs imu_held_ns = 0;    ///< part of the step for which the last IMU reading was held
+  StageTimes times;
+};
+
+}  // namespace holdfast

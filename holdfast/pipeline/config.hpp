@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "baselines/map_filter.hpp"
+#include "holdfast/io/config_io.hpp"
+#include "holdfast/preprocess/scan_selection.hpp"
+
+namespace holdfast::pipeline {
+
+struct LidarConfig {
+  double range_sigma_m = 0.02;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("range_sigma_m", self.range_sigma_m,
+          FieldDoc{"standard deviation of a range, along the ray (article, section 1)", 1e-4, 1.0});
+  }
+};
+
+/// How far off a given initial pose may be.
+struct StartConfig {
+  double position_m = 1.0;
+  double rotation_deg = 10.0;
+  double speed_m_s = 15.0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("position_m", self.position_m,
+          FieldDoc{"error to be expected of the initial position", 0.01, 5.0});
+    visit("rotation_deg", self.rotation_deg,
+          FieldDoc{"error to be expected of the initial rotation", 0.1, 30.0});
+    visit("speed_m_s", self.speed_m_s,
+          FieldDoc{"speed that the robot may already have at the start", 0.0, 100.0});
+  }
+};
+
+/// The whole configuration. Every key has a default but the extrinsic calibration, which nobody can
+/// guess.
+struct Config {
+  SE3 T_body_lidar;
+  bool has_T_body_lidar = false;
+  std::string method = "map_filter";
+  LidarConfig lidar;
+  baselines::ImuNoiseConfig imu;
+  StartConfig start;
+  preprocess::ScanSelectionConfig preprocess;
+  baselines::MapFilterConfig map_filter;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("T_body_lidar", self.T_body_lidar,
+          FieldDoc{"pose of the LiDAR in the body frame (the IMU's): x, y, z in m, then qx, qy, qz, "
+                   "qw; required"},
+          &self.has_T_body_lidar);
+    visit("method", self.method,
+          FieldDoc{"localizer",
+                   -std::numeric_limits<double>::infinity(),
+                   std::numeric_limits<double>::infinity(),
+                   "map_filter"});
+  }
+};
+
+/// All fields of `config`, by their keys. The references point into `config`.
+std::vector<io::FieldRef> fields_of(Config& config);
+
+/// Defaults, then the file (unless the path is empty), then each `key=value`. Errors name file and
+/// key; a missing extrinsic names T_body_lidar.
+Result<Config> load_config(const std::filesystem::path& file,
+                           const std::vector<std::string>& assignments);
+
+}  // namespace holdfast::pipeline

@@ -1,0 +1,31 @@
+#include "holdfast/pipeline/localizer.hpp"
+
+#include <numbers>
+
+namespace holdfast::pipeline {
+
+Result<Localizer> Localizer::create(const Config& config, map::PriorMap map,
+                                    const std::optional<SE3>& T_map_body, int threads) {
+  if (!T_map_body) {
+    return Error{
+        "no initial pose: give --initial-pose \"x y z qx qy qz qw\" (T_map_body at the end of the "
+        "first scan, to within start.position_m and start.rotation_deg); a start without a pose is "
+        "not available yet"};
+  }
+  baselines::MapFilter::Setup setup;
+  setup.filter = config.map_filter;
+  setup.imu = config.imu;
+  setup.selection = config.preprocess;
+  setup.start = {config.start.position_m, config.start.rotation_deg * std::numbers::pi / 180.0,
+                 config.start.speed_m_s};
+  setup.range_sigma_m = config.lidar.range_sigma_m;
+  setup.T_body_lidar = config.T_body_lidar;
+  setup.threads = threads;
+  return Localizer(std::make_unique<baselines::MapFilter>(std::move(map), setup, *T_map_body));
+}
+
+void Localizer::add_imu(const ImuSample& sample) { filter_->add_imu(sample); }
+
+StepReport Localizer::add_scan(const Scan& scan) { return filter_->add_scan(scan); }
+
+}  // namespace holdfast::pipeline

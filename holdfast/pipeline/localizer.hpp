@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "baselines/map_filter.hpp"
+#include "holdfast/core/result.hpp"
+#include "holdfast/core/step_report.hpp"
+#include "holdfast/map/prior_map.hpp"
+#include "holdfast/pipeline/config.hpp"
+
+namespace holdfast::pipeline {
+
+/// Where the robot is in a map it already has. Synchronous, with a single owner; not thread-safe.
+/// Same calls, same bits, for any number of threads.
+class Localizer {
+ public:
+  /// `T_map_body` is the pose at the first scan's last point, to within Config::start. Without it
+  /// there is no search yet that could find it: an error that says so.
+  static Result<Localizer> create(const Config& config, map::PriorMap map,
+                                  const std::optional<SE3>& T_map_body, int threads = 1);
+
+  /// Readings in ascending order.
+  void add_imu(const ImuSample& sample);
+
+  /// One scan, after the IMU readings up to its last point (EventSequencer sees to that).
+  StepReport add_scan(const Scan& scan);
+
+ private:
+  explicit Localizer(std::unique_ptr<baselines::MapFilter> filter) : filter_(std::move(filter)) {}
+
+  std::unique_ptr<baselines::MapFilter> filter_;
+};
+
+}  // namespace holdfast::pipeline
