@@ -89,6 +89,8 @@ double estimate_noise(const LocalCloud& local, double cell_m) {
   constexpr double kLeast = 0.003;
   constexpr double kMost = 0.08;
   const std::size_t step = std::max<std::size_t>(1, local.buckets.size() / 8);
+  FitOptions narrow;
+  narrow.wide_radius = narrow.narrow_radius;
   std::vector<double> thickness;
   std::size_t number = 0;
   for (const auto& [key, indices] : local.buckets) {
@@ -97,7 +99,7 @@ double estimate_noise(const LocalCloud& local, double cell_m) {
     const auto& cells = grid.occupied();
     const std::size_t cell_step = std::max<std::size_t>(1, cells.size() / 200);
     for (std::size_t i = 0; i < cells.size(); i += cell_step) {
-      const double sigma = plane_thickness(grid, cells[i], {});
+      const double sigma = plane_thickness(grid, cells[i], narrow);
       if (sigma >= 0) thickness.push_back(sigma);
     }
   }
@@ -259,26 +261,25 @@ Status collect(const Job& job, const std::vector<TileResult>& results, MapInfo& 
 
 double estimate_spacing(const io::PointCloud& cloud) {
   constexpr double kCell = 0.5;
+  constexpr double kOffset = 1 << 20;
   std::vector<std::uint64_t> keys;
   keys.reserve(cloud.points.size());
   for (const auto& p : cloud.points) {
-    const Eigen::Vector3d c = (p.cast<double>() / kCell).array().floor();
-    constexpr double kOffset = 1 << 20;
-    keys.push_back(static_cast<std::uint64_t>(c.x() + kOffset) << 42 |
-                   static_cast<std::uint64_t>(c.y() + kOffset) << 21 |
-                   static_cast<std::uint64_t>(c.z() + kOffset));
+    const Eigen::Vector3d c = (p.cast<double>() / kCell).array().floor() + kOffset;
+    keys.push_back(static_cast<std::uint64_t>(c.x()) << 42 |
+                   static_cast<std::uint64_t>(c.y()) << 21 | static_cast<std::uint64_t>(c.z()));
   }
   std::sort(keys.begin(), keys.end());
-  std::vector<std::uint32_t> counts;
+  std::vector<std::uint32_t> neighbours;  // of each point: how many share its cell
+  neighbours.reserve(keys.size());
   for (std::size_t i = 0; i < keys.size();) {
-    std::size_t end = i;
-    while (end < keys.size() && keys[end] == keys[i]) ++end;
-    counts.push_back(static_cast<std::uint32_t>(end - i));
-    i = end;
+    const auto end = std::upper_bound(keys.begin() + i, keys.end(), keys[i]) - keys.begin();
+    neighbours.insert(neighbours.end(), end - i, static_cast<std::uint32_t>(end - i));
+    i = static_cast<std::size_t>(end);
   }
-  if (counts.empty()) return kCell;
+  if (neighbours.empty()) return kCell;
   // A surface through a cell has about the area of one of its sides.
-  return kCell / std::sqrt(static_cast<double>(median(counts)));
+  return kCell / std::sqrt(static_cast<double>(median(std::move(neighbours))));
 }
 
 Result<MapInfo> build_map(MapSource source, const std::filesystem::path& path, WorkerPool& pool,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <limits>
 
@@ -117,12 +118,20 @@ Result<io::PointCloud> PriorMap::read_points(const std::filesystem::path& dir,
   cloud.origin = info.origin;
   cloud.points.reserve(info.points);
   for (const TileInfo& tile : info.tiles) {
-    auto content = read_point_file(dir, tile);
-    if (!content) return content.error();
-    const auto* points = reinterpret_cast<const Eigen::Vector3f*>(content->data());
-    cloud.points.insert(cloud.points.end(), points, points + tile.points);
+    auto points = read_tile_points(dir, tile);
+    if (!points) return points.error();
+    cloud.points.insert(cloud.points.end(), points->begin(), points->end());
   }
   return cloud;
+}
+
+Result<std::vector<Eigen::Vector3f>> PriorMap::read_tile_points(const std::filesystem::path& dir,
+                                                                const TileInfo& tile) {
+  auto content = read_point_file(dir, tile);
+  if (!content) return content.error();
+  std::vector<Eigen::Vector3f> points(tile.points);
+  if (!points.empty()) std::memcpy(points.data(), content->data(), content->size());
+  return points;
 }
 
 Status PriorMap::verify(const std::filesystem::path& dir, const MapInfo& info) {

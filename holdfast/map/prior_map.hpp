@@ -58,6 +58,9 @@ class PriorMap {
   /// All points of the map in the map frame, tile by tile. Errors name a tile that does not hold
   /// what its checksum says.
   static Result<io::PointCloud> read_points(const std::filesystem::path& dir, const MapInfo& info);
+  /// The points of one tile, relative to the map's origin.
+  static Result<std::vector<Eigen::Vector3f>> read_tile_points(const std::filesystem::path& dir,
+                                                               const TileInfo& tile);
   /// Reads every file of the map and compares its checksum.
   static Status verify(const std::filesystem::path& dir, const MapInfo& info);
 

@@ -94,6 +94,8 @@ struct Neighbourhood {
   Offsets all;  ///< within the wide radius
 };
 
+constexpr std::size_t kPointsPerCell = 24;
+
 Neighbourhood gather(const PointGrid& grid, const Cell& cell, const FitOptions& options) {
   Neighbourhood n;
   const auto own = grid.points(cell);
@@ -108,8 +110,11 @@ Neighbourhood gather(const PointGrid& grid, const Cell& cell, const FitOptions& 
   for (int z = low.z(); z <= high.z(); ++z) {
     for (int y = low.y(); y <= high.y(); ++y) {
       for (int x = low.x(); x <= high.x(); ++x) {
-        for (const auto& p : grid.points({x, y, z})) {
-          const Eigen::Vector3d d = p.cast<double>() - n.center;
+        const auto points = grid.points({x, y, z});
+        // More points than this in one cell tell nothing new.
+        const std::size_t step = points.size() / kPointsPerCell + 1;
+        for (std::size_t i = 0; i < points.size(); i += step) {
+          const Eigen::Vector3d d = points.first[i].cast<double>() - n.center;
           if (d.squaredNorm() < radius * radius) n.all.push_back(d);
         }
       }
@@ -147,12 +152,27 @@ bool explains(const Plane& plane, const Offsets& own, const FitOptions& options)
   return 2 * m.count >= static_cast<int>(own.size());
 }
 
-/// The plane through three spread points of `points` that has most points near it; a fixed set of
-/// triples, so that the same map always gives the same fits.
+/// At most `most` of the points, evenly.
+Offsets sample(const Offsets& points, std::size_t most) {
+  if (points.size() <= most) return points;
+  Offsets few;
+  for (std::size_t i = 0; i < most; ++i) few.push_back(points[i * points.size() / most]);
+  return few;
+}
+
+int count_near(const Offsets& points, const Plane& plane, double band_m) {
+  int count = 0;
+  for (const auto& d : points) count += std::abs(plane.normal.dot(d - plane.point)) < band_m ? 1 : 0;
+  return count;
+}
+
+/// The plane through three points, two of them the cell's own, that has most points near it; a fixed
+/// set of triples, so that the same map always gives the same fits.
 std::optional<Plane> best_of_triples(const Offsets& own, const Offsets& all,
                                      const FitOptions& options) {
-  constexpr int kTriples = 24;
+  constexpr int kTriples = 20;
   const auto n = own.size();
+  const Offsets judges = sample(all, 60);
   std::optional<Plane> best;
   for (int k = 0; k < kTriples; ++k) {
     const Eigen::Vector3d& a = own[(k * 7 + 1) % n];
@@ -161,11 +181,10 @@ std::optional<Plane> best_of_triples(const Offsets& own, const Offsets& all,
     const Eigen::Vector3d cross = (b - a).cross(c - a);
     if (cross.norm() < 20.0 * options.noise_m * options.noise_m) continue;
     const Plane candidate{a, cross.normalized(), 0, 0, 0};
-    const Moments near = near_plane(all, candidate, 2.5 * options.noise_m);
-    if (!best || near.count > best->support) {
-      best = candidate;
-      best->support = near.count;
-    }
+    const int near = count_near(judges, candidate, 2.5 * options.noise_m);
+    if (best && near <= best->support) continue;
+    best = candidate;
+    best->support = near;
   }
   return best;
 }
@@ -183,7 +202,8 @@ void several_planes(const Neighbourhood& n, double cell_m, const FitOptions& opt
   constexpr int kMostPlanes = 3;
   Offsets own = n.own;
   Offsets all = within(n.all, 1.4 * options.narrow_radius * cell_m);
-  for (int k = 0; k < kMostPlanes && own.size() >= 3; ++k) {
+  for (int k = 0; k < kMostPlanes && own.size() >= 3 &&
+                  static_cast<int>(all.size()) >= options.min_support; ++k) {
     const auto seed = best_of_triples(own, all, options);
     if (!seed) return;
     auto plane = plane_through(near_plane(all, *seed, 3.0 * options.noise_m), options.min_support);
