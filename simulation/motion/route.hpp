@@ -24,6 +24,7 @@ class Route {
     Eigen::Vector3d position;
     double heading = 0;    ///< rad, continuous in s (grows by the loop's turning each round)
     double curvature = 0;  ///< 1/m, positive to the left
+    double slope = 0;      ///< rise over length
   };
   Place at(double s) const;
   double length() const { return length_; }

@@ -19,6 +19,9 @@ struct MotionState {
 /// R_map_body = Rz(yaw) Ry(pitch) Rx(roll). Yaw is continuous, |pitch| < pi/2.
 using PoseVector = Eigen::Matrix<double, 6, 1>;
 
+/// R_map_body of a pose vector.
+Eigen::Quaterniond rotation_of(const PoseVector& pose);
+
 /// A continuous motion: uniform quintic B-splines of position and attitude angles, four times
 /// continuously differentiable, whose velocities, accelerations and angular rates are the exact
 /// derivatives.
@@ -31,6 +34,14 @@ class Trajectory {
 
   /// Clamped to the times for which the motion is defined.
   MotionState at(TimeNs t) const;
+
+  /// The pose vector with its first and second derivatives, per s and s^2; clamped likewise.
+  struct Values {
+    PoseVector pose;
+    PoseVector rate;
+    PoseVector acceleration;
+  };
+  Values values_at(TimeNs t) const;
 
  private:
   TimeNs begin_;

@@ -4,7 +4,7 @@ namespace holdfast::simulation {
 
 /// How a surface answers a laser pulse. With theta the angle between the ray and the normal:
 ///   P(return) = min(1, diffuse_return * min(1, cos(theta) / grazing_cos)
-///                      + mirror_return * exp(-(theta / mirror_lobe_rad)^2)).
+///                      + mirror_return * exp(-2 (1 - cos(theta)) / mirror_lobe_rad^2)).
 struct Material {
   const char* name = "ideal";
   double reflectivity = 0.5;     ///< share of the light scattered back; scales the intensity

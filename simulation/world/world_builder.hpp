@@ -1,6 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <utility>
 #include <vector>
 
 #include "simulation/world/world.hpp"
@@ -14,7 +15,8 @@ struct Box {
   double yaw = 0;
 };
 
-/// A hole in a wall: a door recess, a niche, a window, a passage. Metres along and up the wall.
+/// A hole in a wall: a door recess, a niche, a window, a passage. `start` and `width` count along
+/// the wall, `bottom` and `top` are heights in the map.
 struct WallOpening {
   double start = 0;
   double width = 1;
@@ -35,7 +37,8 @@ struct WallPlan {
   std::vector<WallOpening> openings;  ///< must not overlap along the wall
 };
 
-/// Puts a world together from simple solids. Everything is in the map frame, metres, z up.
+/// Puts a world together from simple solids. Everything is in the map frame, metres, z up. A
+/// material is known by its name.
 class WorldBuilder {
  public:
   /// Four corners of a flat quadrilateral, counter-clockwise seen from its front.
@@ -68,8 +71,11 @@ class WorldBuilder {
 
  private:
   std::uint16_t material_index(const Material& material);
-  void ring(const Eigen::Vector3d& base, double radius, double top_radius, double height,
-            const Material& material, int segments);
+  void mantle(const Eigen::Vector3d& base, double radius, double top_radius, double height,
+              const Material& material, int segments);
+  void cap(const Eigen::Vector3d& center, double radius, bool up, const Material& material,
+           int segments);
+  void opening(const WallPlan& plan, const WallOpening& hole);
 
   World world_;
 };

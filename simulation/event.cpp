@@ -1,0 +1,86 @@
+#include "simulation/event.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace holdfast::simulation {
+namespace {
+
+constexpr std::array<std::string_view, 3> kNames = {"blind", "imu_bias_jump", "kidnap"};
+constexpr TimeNs kDefaultBlindness = 2 * kSecond;
+
+Error bad_event(const std::string& text, const std::string& found) {
+  return {
+      fmt::format("event '{}': expected NAME@T0[+DURATION] with seconds from the start of the "
+                  "log and NAME one of {}; found {}",
+                  text, fmt::join(kNames, ", "), found)};
+}
+
+std::string pose_json(const SE3& pose) {
+  const auto& p = pose.translation;
+  const auto& q = pose.rotation;
+  return fmt::format("[{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f}]", p.x(), p.y(), p.z(),
+                     q.x(), q.y(), q.z(), q.w());
+}
+
+std::string vector_json(const Eigen::Vector3d& v) {
+  return fmt::format("[{:.9f},{:.9f},{:.9f}]", v.x(), v.y(), v.z());
+}
+
+std::string details_json(const SimulatedEvent& event) {
+  switch (event.kind) {
+    case EventKind::kBlind: return "";
+    case EventKind::kImuBiasJump:
+      return fmt::format(",\"gyro_step_rad_s\":{},\"accel_step_m_s2\":{}",
+                         vector_json(event.gyro_step_rad_s), vector_json(event.accel_step_m_s2));
+    case EventKind::kKidnap: break;
+  }
+  const double distance = (event.pose_after.translation - event.pose_before.translation).norm();
+  const double angle = so3::angle_between(event.pose_before.rotation, event.pose_after.rotation);
+  return fmt::format(
+      ",\"pose_before\":{},\"pose_after\":{},\"distance_m\":{:.6f},\"angle_deg\":{:.6f}",
+      pose_json(event.pose_before), pose_json(event.pose_after), distance,
+      angle * 180 / std::numbers::pi);
+}
+
+}  // namespace
+
+std::string_view event_name(EventKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+
+std::vector<std::string_view> event_names() { return {kNames.begin(), kNames.end()}; }
+
+Result<EventSpec> parse_event(const std::string& text) {
+  const std::size_t at = text.find('@');
+  if (at == std::string::npos) return bad_event(text, "no '@'");
+  const std::string name = text.substr(0, at);
+  EventSpec event;
+  std::size_t kind = 0;
+  while (kind < kNames.size() && kNames[kind] != name) ++kind;
+  if (kind == kNames.size()) return bad_event(text, fmt::format("the name '{}'", name));
+  event.kind = static_cast<EventKind>(kind);
+  const std::size_t plus = text.find('+', at);
+  const std::string start = text.substr(at + 1, plus == std::string::npos ? plus : plus - at - 1);
+  if (!parse_seconds(start, event.start) || event.start < 0) {
+    return bad_event(text, fmt::format("the start '{}'", start));
+  }
+  if (event.kind == EventKind::kBlind) event.duration = kDefaultBlindness;
+  if (plus == std::string::npos) return event;
+  const std::string duration = text.substr(plus + 1);
+  if (event.kind != EventKind::kBlind) {
+    return bad_event(text, fmt::format("a duration, which {} does not take", name));
+  }
+  if (!parse_seconds(duration, event.duration) || event.duration <= 0) {
+    return bad_event(text, fmt::format("the duration '{}'", duration));
+  }
+  return event;
+}
+
+std::string event_json(const SimulatedEvent& event) {
+  return fmt::format("{{\"t0\":{},\"t1\":{},\"event\":\"{}\"{}}}", format_seconds(event.t0),
+                     format_seconds(event.t1), event_name(event.kind), details_json(event));
+}
+
+}  // namespace holdfast::simulation

@@ -1,0 +1,245 @@
+#include "simulation/motion/drive_planner.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "simulation/motion/smoothing.hpp"
+
+namespace holdfast::simulation {
+namespace {
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+constexpr TimeNs kKnot = kSecond / 20;
+constexpr double kKnotSeconds = 0.05;
+
+// Smoothing and spline spread each tick to both sides; the robot therefore sets off this much after
+// its rest ends.
+constexpr std::size_t kSplineReach = 3;
+constexpr TimeNs kReach = TimeNs{kMeanReach + kSplineReach} * kKnot;
+
+// A leg's controls begin before its start and end after its end by these many ticks, so that two
+// legs can be joined; the first tick of all lies kLead ticks before the log.
+constexpr std::size_t kLead = 20;
+constexpr std::size_t kTail = 48;
+
+// After a kidnap the body moves on as if nothing had happened for kBlendBegin and has come back to
+// its route after kBlendEnd.
+constexpr double kBlendBegin = 0.25;
+constexpr double kBlendEnd = 1.75;
+
+// A kidnap moves >= 3 m or >= 45 degrees; weaving and smoothing may take a little of that away.
+constexpr double kFarMetres = 3.5;
+constexpr double kFarRadians = 60.0 / 180.0 * std::numbers::pi;
+
+TimeNs tick_time(std::size_t tick) { return (static_cast<TimeNs>(tick) - TimeNs{kLead}) * kKnot; }
+std::size_t tick_at(TimeNs t) { return static_cast<std::size_t>(t / kKnot) + kLead; }
+
+/// 0 below 0, 1 above 1, twice continuously differentiable.
+double smooth_step(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x * x * x * (10 + x * (6 * x - 15));
+}
+
+/// `pose` moved by the yaw-only transform that takes pose `a` to the place of pose `b`.
+PoseVector moved(const PoseVector& pose, const PoseVector& a, const PoseVector& b) {
+  const double turn = b[3] - a[3];
+  PoseVector out = pose;
+  out.head<3>() =
+      Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) * (pose - a).head<3>() + b.head<3>();
+  out[3] += turn;
+  return out;
+}
+
+}  // namespace
+
+double DrivePlanner::Wave::at(double x) const { return std::sin(kTwoPi * frequency * x + phase); }
+
+double DrivePlanner::Wave::slope_at(double x) const {
+  return kTwoPi * frequency * std::cos(kTwoPi * frequency * x + phase);
+}
+
+DrivePlanner::TwoWaves DrivePlanner::draw_waves(RandomStream& random, double longest,
+                                                double shortest) {
+  const double middle = std::sqrt(longest * shortest);
+  return {Wave{1 / random.uniform(middle, longest), random.uniform(0, kTwoPi)},
+          Wave{1 / random.uniform(shortest, middle), random.uniform(0, kTwoPi)}};
+}
+
+DrivePlanner::DrivePlanner(const Route& route, const DriveStyle& style, std::uint64_t seed)
+    : style_(style), kidnap_random_(seed, "drive.kidnap") {
+  const Route back = route.reversed();
+  courses_.push_back({route, SpeedLimit(route, style)});
+  courses_.push_back({back, SpeedLimit(back, style)});
+  RandomStream start(seed, "drive.start");
+  legs_.push_back({0, start.below(2), start.uniform(0, route.length()), 0});
+  RandomStream line(seed, "drive.line");
+  weave_ = draw_waves(line, 25, 7);
+  RandomStream pace(seed, "drive.pace");
+  pace_ = draw_waves(pace, 25, 5);
+  RandomStream sway(seed, "drive.sway");
+  for (auto& waves : sway_) waves = draw_waves(sway, 1.4, 0.4);
+}
+
+void DrivePlanner::drive(std::optional<TimeNs> duration, const std::vector<TimeNs>& kidnaps) {
+  gone_.assign(kLead, 0.0);
+  speed_.assign(kLead, 0.0);
+  std::optional<TimeNs> end = duration;
+  auto kidnap = kidnaps.begin();
+  double gone = 0;
+  double speed = 0;
+  for (std::size_t tick = kLead; !end || tick_time(tick) < *end + TimeNs{kTail + 1} * kKnot;
+       ++tick) {
+    const TimeNs t = tick_time(tick);
+    for (; kidnap != kidnaps.end() && *kidnap <= t && (!end || *kidnap < *end); ++kidnap) {
+      begin_leg(*kidnap, gone - speed * to_seconds(t - *kidnap));
+    }
+    gone_.push_back(gone);
+    speed_.push_back(speed);
+    const double target = target_speed(t, gone, !duration);
+    const double step = style_.acceleration_m_s2 * kKnotSeconds;
+    speed += std::clamp(target - speed, -1.5 * step, step);
+    gone += speed * kKnotSeconds;
+    if (!end && speed == 0 && t > from_seconds(style_.rest_s) + kReach) {
+      end = (t + kReach) / kSecond * kSecond + 2 * kSecond;
+    }
+  }
+  duration_ = *end;
+}
+
+double DrivePlanner::target_speed(TimeNs t, double gone, bool stop_at_distance) const {
+  if (t < from_seconds(style_.rest_s) + kReach) return 0;
+  const Leg& leg = legs_.back();
+  const double seconds = to_seconds(t);
+  const double pace = 1 + 0.05 * (pace_[0].at(seconds) + pace_[1].at(seconds));
+  double target = pace * courses_[leg.course].limit.at(leg.s + gone - leg.gone);
+  if (stop_at_distance) {
+    const double left = style_.distance_m - gone;
+    if (left < 0.02) return 0;
+    target = std::min(target, std::sqrt(2 * style_.acceleration_m_s2 * left));
+  }
+  return target;
+}
+
+/// Draws the place after a kidnap among those far enough away where the route bends about as it
+/// would have bent without the kidnap.
+void DrivePlanner::begin_leg(TimeNs t, double gone) {
+  const Leg from = legs_.back();
+  std::vector<std::pair<double, Leg>> candidates;
+  constexpr double kStep = 0.2;
+  for (std::size_t course = 0; course < courses_.size(); ++course) {
+    for (double s = 0; s < courses_[course].route.length(); s += kStep) {
+      const Leg to{t, course, s, gone};
+      if (is_far(from, to)) candidates.emplace_back(course_difference(from, to, gone), to);
+    }
+  }
+  assert(!candidates.empty());  // the way back at the same place is always one
+  double best = candidates.front().first;
+  for (const auto& [difference, leg] : candidates) best = std::min(best, difference);
+  std::erase_if(candidates, [best](const auto& c) { return c.first > 1.2 * best + 0.05; });
+  legs_.push_back(candidates[kidnap_random_.below(candidates.size())].second);
+}
+
+bool DrivePlanner::is_far(const Leg& from, const Leg& to) const {
+  const Route::Place a = courses_[from.course].route.at(from.s + to.gone - from.gone);
+  const Route::Place b = courses_[to.course].route.at(to.s);
+  return (a.position - b.position).norm() >= kFarMetres ||
+         std::abs(std::remainder(a.heading - b.heading, kTwoPi)) >= kFarRadians;
+}
+
+double DrivePlanner::course_difference(const Leg& from, const Leg& to, double gone) const {
+  double worst = 0;
+  for (double ahead = -0.75; ahead <= 2.0; ahead += 0.25) {
+    const auto a = courses_[from.course].route.at(from.s + gone - from.gone + ahead);
+    const auto b = courses_[to.course].route.at(to.s + ahead);
+    worst = std::max(worst, std::abs(a.curvature - b.curvature) + std::abs(a.slope - b.slope));
+  }
+  return worst;
+}
+
+/// Where the robot is on a leg when it has gone so far since the start of the log, weaving
+/// included.
+Route::Place DrivePlanner::place(const Leg& leg, double gone) const {
+  Route::Place place = courses_[leg.course].route.at(leg.s + gone - leg.gone);
+  const double half = 0.5 * style_.weave_m;
+  const double aside = half * (weave_[0].at(gone) + weave_[1].at(gone));
+  const double aside_slope = half * (weave_[0].slope_at(gone) + weave_[1].slope_at(gone));
+  place.position.x() -= aside * std::sin(place.heading);
+  place.position.y() += aside * std::cos(place.heading);
+  place.heading += std::atan(aside_slope);
+  return place;
+}
+
+std::size_t DrivePlanner::first_tick(std::size_t leg) const {
+  return tick_at(legs_[leg].start) - kLead + kMeanReach;
+}
+
+std::size_t DrivePlanner::last_tick(std::size_t leg) const {
+  const TimeNs end = leg + 1 < legs_.size() ? legs_[leg + 1].start : duration_;
+  return tick_at(end) + kTail - kMeanReach;
+}
+
+DrivePlanner::Controls DrivePlanner::plain_controls(std::size_t leg) const {
+  Controls raw;
+  for (std::size_t tick = first_tick(leg) - kMeanReach; tick <= last_tick(leg) + kMeanReach;
+       ++tick) {
+    const Route::Place at = place(legs_[leg], gone_[tick]);
+    PoseVector pose;
+    pose << at.position, at.heading, -std::atan(at.slope), 0;
+    pose[2] += style_.body_height_m;
+    raw.push_back(pose);
+  }
+  return smoothed(std::move(raw));
+}
+
+/// Makes the beginning of leg `leg` continue the motion of the leg before it, at the new place.
+void DrivePlanner::join(std::size_t leg, const Controls& before, Controls& after) const {
+  const TimeNs t = legs_[leg].start;
+  const auto pose_at = [&](std::size_t of, const Controls& controls) {
+    return Trajectory(tick_time(first_tick(of)), kKnot, controls).values_at(t).pose;
+  };
+  const PoseVector from = pose_at(leg - 1, before);
+  const PoseVector to = pose_at(leg, after);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const std::size_t tick = first_tick(leg) + i;
+    const double since = to_seconds(tick_time(tick) - t);
+    if (since >= kBlendEnd) break;
+    const double weight = smooth_step((since - kBlendBegin) / (kBlendEnd - kBlendBegin));
+    const PoseVector& felt = before[tick - first_tick(leg - 1)];
+    after[i] = weight * after[i] + (1 - weight) * moved(felt, from, to);
+  }
+}
+
+/// Adds oscillation that grows with the speed.
+void DrivePlanner::add_sway(std::size_t leg, Controls& controls) const {
+  const std::size_t first = first_tick(leg);
+  const std::vector<double> raw(
+      speed_.begin() + static_cast<std::ptrdiff_t>(first - kMeanReach),
+      speed_.begin() + static_cast<std::ptrdiff_t>(last_tick(leg) + kMeanReach + 1));
+  const std::vector<double> speed = smoothed(raw);
+  for (std::size_t i = 0; i < controls.size(); ++i) {
+    const double t = to_seconds(tick_time(first + i));
+    const double envelope = 0.5 * speed[i] / style_.speed_m_s;
+    const auto sway = [&](const TwoWaves& w) { return envelope * (w[0].at(t) + w[1].at(t)); };
+    controls[i][2] += style_.heave_m * sway(sway_[0]);
+    controls[i][4] += style_.sway_rad * sway(sway_[1]);
+    controls[i][5] += style_.sway_rad * sway(sway_[2]);
+  }
+}
+
+std::vector<Trajectory> DrivePlanner::trajectories() const {
+  std::vector<Controls> controls;
+  for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
+    controls.push_back(plain_controls(leg));
+    if (leg > 0) join(leg, controls[leg - 1], controls[leg]);
+  }
+  std::vector<Trajectory> out;
+  for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
+    add_sway(leg, controls[leg]);
+    out.emplace_back(tick_time(first_tick(leg)), kKnot, std::move(controls[leg]));
+  }
+  return out;
+}
+
+}  // namespace holdfast::simulation

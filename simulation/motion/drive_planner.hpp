@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "holdfast/core/random.hpp"
+#include "simulation/motion/drive.hpp"
+#include "simulation/motion/speed_limit.hpp"
+
+namespace holdfast::simulation {
+
+/// Plans a drive in steps of one spline knot: how far the robot has gone at each tick, where that
+/// is on the route (a new leg after each kidnap), and from that the control poses of each leg.
+class DrivePlanner {
+ public:
+  DrivePlanner(const Route& route, const DriveStyle& style, std::uint64_t seed);
+
+  /// Drives until `duration`, or without one until the style's distance is gone and the robot
+  /// rests.
+  void drive(std::optional<TimeNs> duration, const std::vector<TimeNs>& kidnaps);
+
+  TimeNs duration() const { return duration_; }
+  std::size_t legs() const { return legs_.size(); }
+  TimeNs leg_start(std::size_t leg) const { return legs_[leg].start; }
+  /// Motion of each leg; a leg also covers some time before its start and after its end.
+  std::vector<Trajectory> trajectories() const;
+
+ private:
+  struct Course {  ///< the route in one direction
+    Route route;
+    SpeedLimit limit;
+  };
+  struct Leg {
+    TimeNs start;
+    std::size_t course;
+    double s;     ///< on the course at the start of the leg
+    double gone;  ///< metres since the start of the log
+  };
+  struct Wave {
+    double frequency;
+    double phase;
+    double at(double x) const;
+    double slope_at(double x) const;
+  };
+  using TwoWaves = std::array<Wave, 2>;
+  using Controls = std::vector<PoseVector>;  ///< consecutive ticks from a leg's first_tick()
+
+  static TwoWaves draw_waves(RandomStream& random, double longest, double shortest);
+  double target_speed(TimeNs t, double gone, bool stop_at_distance) const;
+  void begin_leg(TimeNs t, double gone);
+  double course_difference(const Leg& from, const Leg& to, double gone) const;
+  bool is_far(const Leg& from, const Leg& to) const;
+  Route::Place place(const Leg& leg, double gone) const;
+  std::size_t first_tick(std::size_t leg) const;
+  std::size_t last_tick(std::size_t leg) const;
+  Controls plain_controls(std::size_t leg) const;
+  void join(std::size_t leg, const Controls& before, Controls& after) const;
+  void add_sway(std::size_t leg, Controls& controls) const;
+
+  DriveStyle style_;
+  std::vector<Course> courses_;
+  std::vector<Leg> legs_;
+  std::vector<double> gone_;   ///< at each tick
+  std::vector<double> speed_;  ///< at each tick
+  TimeNs duration_ = 0;
+  TwoWaves weave_{};
+  TwoWaves pace_{};
+  std::array<TwoWaves, 3> sway_{};  ///< heave, pitch, roll
+  RandomStream kidnap_random_;
+};
+
+}  // namespace holdfast::simulation

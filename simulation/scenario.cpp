@@ -1,0 +1,36 @@
+#include "simulation/scenario.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "simulation/scenarios/all.hpp"
+
+namespace holdfast::simulation {
+namespace {
+
+constexpr std::array<ScenarioInfo, 6> kScenarios = {{
+    {"corridor", "50 x 3 m with doors, pilasters and boards; 100 m there and back", make_corridor},
+    {"office", "10 x 8 m with desks, cabinets and five people walking; 200 m of rounds",
+     make_office},
+    {"hall", "20 x 15 m of glass and polished floor, a few columns, poor in returns; 150 m",
+     make_hall},
+    {"warehouse", "40 x 24 m with rows of racks that look alike; 200 m", make_warehouse},
+    {"yard", "80 x 60 m open ground between buildings, trees and poles; 250 m", make_yard},
+    {"box", "empty room of 12 x 8 x 4 m, for tests with closed forms; 30 m", make_box},
+}};
+
+}  // namespace
+
+std::span<const ScenarioInfo> scenarios() { return kScenarios; }
+
+Result<Scenario> make_scenario(std::string_view name) {
+  std::string known;
+  for (const ScenarioInfo& info : kScenarios) {
+    if (info.name == name) return info.make();
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", info.name);
+  }
+  return Error{fmt::format("unknown scenario '{}'; known are: {}", name, known)};
+}
+
+}  // namespace holdfast::simulation

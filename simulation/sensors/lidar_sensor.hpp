@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "holdfast/core/parallel.hpp"
+#include "holdfast/core/sensor_data.hpp"
+#include "simulation/motion/drive.hpp"
+#include "simulation/sensors/lidar_model.hpp"
+#include "simulation/world/ray_caster.hpp"
+#include "simulation/world/walkers.hpp"
+
+namespace holdfast::simulation {
+
+/// A span of time in which the LiDAR sees nothing, from the start of the log.
+struct BlindSpan {
+  TimeNs begin = 0;
+  TimeNs end = 0;
+};
+
+/// What a LiDAR looks at while the robot drives.
+struct Surroundings {
+  const RayCaster& caster;
+  const std::vector<Material>& materials;
+  const Drive& drive;
+  const Walkers& walkers;
+  std::vector<BlindSpan> blind;
+};
+
+/// Casts every ray from where the LiDAR is at the ray's own time.
+class LidarSensor {
+ public:
+  LidarSensor(const LidarModel& model, std::uint64_t seed);
+
+  /// The revolution that begins at `begin` (from the start of the log); its index names its noise.
+  /// Points are in the order of firing; Scan::stamp is that of the first return, from the start of
+  /// the log. Same bits for any number of threads.
+  Scan revolve(std::size_t index, TimeNs begin, const Surroundings& around, WorkerPool& pool) const;
+
+ private:
+  /// The LiDAR at the start of a column, and how its rays move from there, in the map frame.
+  struct ColumnPose {
+    Eigen::Vector3f origin;
+    Eigen::Vector3f velocity;
+    Eigen::Matrix3f rotation;
+    Eigen::Matrix3f rotation_rate;
+  };
+  struct Chunk;
+
+  ColumnPose column_pose(const Drive& drive, TimeNs t) const;
+  TimeNs fire_time(std::size_t column, std::size_t beam) const;
+  void cast_chunk(Chunk& chunk, const Surroundings& around) const;
+  void cast_walkers(Chunk& chunk, const Surroundings& around) const;
+  void measure_chunk(Chunk& chunk, const Surroundings& around) const;
+
+  LidarModel model_;
+  std::uint64_t seed_;
+  std::vector<TimeNs> column_times_;         ///< from the start of the revolution
+  std::vector<Eigen::Vector3f> directions_;  ///< in the lidar frame, [column][beam]
+};
+
+}  // namespace holdfast::simulation

@@ -1,0 +1,266 @@
+#include "simulation/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "holdfast/core/parallel.hpp"
+#include "simulation/sensors/imu_sensor.hpp"
+#include "simulation/sensors/lidar_sensor.hpp"
+#include "simulation/world/survey.hpp"
+
+namespace holdfast::simulation {
+namespace {
+
+constexpr TimeNs kEpoch = 1'700'000'000 * kSecond;
+
+/// Starts of all events of one kind, in order.
+std::vector<TimeNs> starts_of(EventKind kind, const std::vector<EventSpec>& events) {
+  std::vector<TimeNs> starts;
+  for (const EventSpec& event : events) {
+    if (event.kind == kind) starts.push_back(event.start);
+  }
+  std::sort(starts.begin(), starts.end());
+  return starts;
+}
+
+std::vector<BlindSpan> blind_spans(const std::vector<EventSpec>& events) {
+  std::vector<BlindSpan> spans;
+  for (const EventSpec& event : events) {
+    if (event.kind != EventKind::kBlind) continue;
+    spans.push_back({event.start, event.start + event.duration});
+  }
+  return spans;
+}
+
+std::vector<BiasJump> draw_jumps(const SimulationOptions& options) {
+  RandomStream random(options.seed, "imu.bias_jump");
+  std::vector<BiasJump> jumps;
+  for (const TimeNs t : starts_of(EventKind::kImuBiasJump, options.events)) {
+    jumps.push_back(ImuSensor::draw_jump(options.imu, t, random));
+  }
+  return jumps;
+}
+
+/// What is wrong with the options, empty when nothing is.
+std::string complaint(const Scenario& scenario, const SimulationOptions& options) {
+  const double interval = 1e9 / options.imu.rate_hz;
+  if (!(options.imu.rate_hz > 0) || std::abs(interval - std::round(interval)) > 1e-6) {
+    return fmt::format("imu rate of {} Hz: expected a whole number of nanoseconds between samples",
+                       options.imu.rate_hz);
+  }
+  const LidarModel& lidar = options.lidar;
+  if (lidar.beams.empty() || lidar.columns < 1 || lidar.period < 1) {
+    return fmt::format("lidar with {} beams, {} columns and a period of {} ns: expected some",
+                       lidar.beams.size(), lidar.columns, lidar.period);
+  }
+  if (scenario.world.triangles.empty()) {
+    return fmt::format("scenario '{}': its world has no surface", scenario.name);
+  }
+  if (options.duration_s && !(*options.duration_s >= 0.5 && *options.duration_s <= 1e6)) {
+    return fmt::format("duration of {} s: expected 0.5 to 1000000", *options.duration_s);
+  }
+  if (options.threads < 1) return fmt::format("{} threads: expected at least 1", options.threads);
+  return {};
+}
+
+std::string late_event(const SimulationOptions& options, TimeNs duration) {
+  for (const EventSpec& event : options.events) {
+    if (event.start >= 0 && event.start < duration) continue;
+    return fmt::format("event {} at {} s: expected a start within the log, 0 to {} s",
+                       event_name(event.kind), to_seconds(event.start), to_seconds(duration));
+  }
+  return {};
+}
+
+}  // namespace
+
+struct Simulation::Parts {
+  SimulationOptions options;
+  Scenario scenario;
+  RayCaster caster;
+  WorkerPool pool;
+  Drive drive;
+  Walkers walkers;
+  std::size_t imu_samples;
+  TimeNs first_scan;  ///< begin of the first revolution; times here count from the start of the log
+  std::size_t scans;
+  std::vector<BiasJump> jumps;
+  ImuSensor imu;
+  LidarSensor lidar;
+  Surroundings around;
+  std::vector<SimulatedEvent> events;
+
+  std::size_t next_imu = 0;
+  std::size_t next_scan = 0;    ///< the next to be cast
+  std::optional<Scan> pending;  ///< cast but not yet handed out; times from the start of the log
+  std::optional<TimeNs> first_pose_time;
+
+  Parts(Scenario the_scenario, const SimulationOptions& the_options, Drive the_drive);
+  TimeNs log_end() const { return static_cast<TimeNs>(imu_samples - 1) * imu.interval(); }
+  void cast_pending();
+  ImuSample take_imu();
+  Scan take_scan();
+  std::vector<SimulatedEvent> list_events() const;
+  TrueState state(TimeNs t) const;
+};
+
+Simulation::Parts::Parts(Scenario the_scenario, const SimulationOptions& the_options,
+                         Drive the_drive)
+    : options(the_options),
+      scenario(std::move(the_scenario)),
+      caster(scenario.world),
+      pool(options.threads),
+      drive(std::move(the_drive)),
+      walkers(scenario.walkers, drive, options.seed),
+      imu_samples(static_cast<std::size_t>(
+          static_cast<double>(drive.duration()) * options.imu.rate_hz / 1e9 + 1 + 1e-9)),
+      first_scan(from_seconds(RandomStream(options.seed, "lidar.phase").uniform(0.01, 0.06))),
+      scans(0),
+      jumps(draw_jumps(options)),
+      imu(options.imu, options.seed, imu_samples, jumps),
+      lidar(options.lidar, options.seed),
+      around{caster, scenario.world.materials, drive, walkers, blind_spans(options.events)} {
+  scans =
+      static_cast<std::size_t>(std::max<TimeNs>(log_end() - first_scan, 0) / options.lidar.period);
+  events = list_events();
+}
+
+void Simulation::Parts::cast_pending() {
+  if (pending || next_scan == scans) return;
+  const TimeNs begin = first_scan + static_cast<TimeNs>(next_scan) * options.lidar.period;
+  pending = lidar.revolve(next_scan, begin, around, pool);
+  if (next_scan == 0) first_pose_time = pending->end_time;
+  ++next_scan;
+}
+
+ImuSample Simulation::Parts::take_imu() {
+  const TimeNs t = static_cast<TimeNs>(next_imu) * imu.interval();
+  ImuSample sample = imu.measure(next_imu, drive.at(t));
+  sample.t = kEpoch + t;
+  ++next_imu;
+  return sample;
+}
+
+Scan Simulation::Parts::take_scan() {
+  Scan scan = std::move(*pending);
+  pending.reset();
+  scan.stamp += kEpoch;
+  scan.end_time += kEpoch;
+  return scan;
+}
+
+std::vector<SimulatedEvent> Simulation::Parts::list_events() const {
+  std::vector<SimulatedEvent> out;
+  const auto add = [&](EventKind kind, TimeNs t0, TimeNs t1) -> SimulatedEvent& {
+    SimulatedEvent event;
+    event.kind = kind;
+    event.t0 = kEpoch + t0;
+    event.t1 = kEpoch + std::min(t1, log_end());
+    return out.emplace_back(event);
+  };
+  for (const BlindSpan& span : around.blind) add(EventKind::kBlind, span.begin, span.end);
+  for (const BiasJump& jump : jumps) {
+    SimulatedEvent& event = add(EventKind::kImuBiasJump, jump.t, jump.t);
+    event.gyro_step_rad_s = jump.gyro;
+    event.accel_step_m_s2 = jump.accel;
+  }
+  for (const Teleport& teleport : drive.teleports()) {
+    SimulatedEvent& event = add(EventKind::kKidnap, teleport.t, teleport.t);
+    event.pose_before = teleport.before;
+    event.pose_after = teleport.after;
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const auto& a, const auto& b) { return a.t0 < b.t0; });
+  return out;
+}
+
+TrueState Simulation::Parts::state(TimeNs t) const {
+  const TimeNs clamped = std::clamp<TimeNs>(t, 0, log_end());
+  const MotionState motion = drive.at(clamped);
+  const auto& bias = imu.bias(static_cast<std::size_t>(clamped / imu.interval()));
+  return {kEpoch + t,        motion.T_map_body, motion.v_map, motion.a_map,
+          motion.omega_body, bias.gyro,         bias.accel};
+}
+
+Result<std::unique_ptr<Simulation>> Simulation::create(const SimulationOptions& options) {
+  auto scenario = make_scenario(options.scenario);
+  if (!scenario) return scenario.error();
+  return create(std::move(*scenario), options);
+}
+
+Result<std::unique_ptr<Simulation>> Simulation::create(Scenario scenario,
+                                                       const SimulationOptions& options) {
+  const std::string wrong = complaint(scenario, options);
+  if (!wrong.empty()) return Error{wrong};
+  std::optional<TimeNs> duration;
+  if (options.duration_s) duration = from_seconds(*options.duration_s);
+  Drive drive = Drive::plan(scenario.route, scenario.style, options.seed, duration,
+                            starts_of(EventKind::kKidnap, options.events));
+  const std::string late = late_event(options, drive.duration());
+  if (!late.empty()) return Error{late};
+  auto parts = std::make_unique<Parts>(std::move(scenario), options, std::move(drive));
+  return std::unique_ptr<Simulation>(new Simulation(std::move(parts)));
+}
+
+Simulation::Simulation(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Simulation::~Simulation() = default;
+
+Result<std::optional<SensorEvent>> Simulation::next() {
+  Parts& p = *parts_;
+  p.cast_pending();
+  const bool imu_left = p.next_imu < p.imu_samples;
+  const TimeNs imu_time = static_cast<TimeNs>(p.next_imu) * p.imu.interval();
+  if (imu_left && !(p.pending && p.pending->end_time < imu_time)) {
+    return std::optional<SensorEvent>(p.take_imu());
+  }
+  if (p.pending) return std::optional<SensorEvent>(p.take_scan());
+  return std::optional<SensorEvent>();
+}
+
+double Simulation::progress() const {
+  return static_cast<double>(parts_->next_imu) / static_cast<double>(parts_->imu_samples);
+}
+
+TimeNs Simulation::start_time() const { return kEpoch; }
+TimeNs Simulation::end_time() const { return kEpoch + parts_->log_end(); }
+std::size_t Simulation::scan_count() const { return parts_->scans; }
+
+SE3 Simulation::truth_at(TimeNs t) const { return state_at(t).T_map_body; }
+TrueState Simulation::state_at(TimeNs t) const { return parts_->state(t - kEpoch); }
+
+std::vector<StampedPose> Simulation::truth() const {
+  std::vector<StampedPose> out;
+  const auto& teleports = parts_->drive.teleports();
+  auto teleport = teleports.begin();
+  for (std::size_t i = 0; i < parts_->imu_samples; ++i) {
+    const TimeNs t = static_cast<TimeNs>(i) * parts_->imu.interval();
+    for (; teleport != teleports.end() && teleport->t <= t; ++teleport) {
+      out.push_back({kEpoch + teleport->t, teleport->before});
+      if (teleport->t < t) out.push_back({kEpoch + teleport->t, teleport->after});
+    }
+    out.push_back({kEpoch + t, parts_->drive.at(t).T_map_body});
+  }
+  return out;
+}
+
+SE3 Simulation::initial_pose() {
+  parts_->cast_pending();
+  return parts_->drive.at(parts_->first_pose_time.value_or(0)).T_map_body;
+}
+
+const std::vector<SimulatedEvent>& Simulation::events() const { return parts_->events; }
+const SimulationOptions& Simulation::options() const { return parts_->options; }
+const Scenario& Simulation::scenario() const { return parts_->scenario; }
+
+io::PointCloud Simulation::survey_map() {
+  Parts& p = *parts_;
+  SurveyModel model;
+  model.height_m = p.scenario.style.body_height_m + p.options.lidar.T_body_lidar.translation.z();
+  model.range_m = p.options.lidar.max_range_m;
+  return survey(p.scenario.world, p.caster, p.scenario.route, model, p.options.seed, p.pool);
+}
+
+}  // namespace holdfast::simulation
