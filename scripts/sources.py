@@ -9,14 +9,15 @@ SKIPPED_FOLDERS = {".git", "build", "out", "demo_out", "node_modules", "__pycach
 
 
 def tracked_files():
-    """Paths relative to the root that git knows and that exist, sorted; without git, all files."""
+    """Our files as sorted paths from the root: those that git knows; without git, all."""
     command = ["git", "-c", "safe.directory=*", "-C", ROOT, "ls-files", "-z"]
     try:
         listing = subprocess.run(command, capture_output=True, check=True).stdout.decode()
         names = [name for name in listing.split("\0") if name]
     except (OSError, subprocess.CalledProcessError):
         names = _walk()
-    return sorted(name for name in names if os.path.isfile(os.path.join(ROOT, name)))
+    return sorted(name for name in names if not name.startswith("third_party/")
+                  and os.path.isfile(os.path.join(ROOT, name)))
 
 
 def _walk():

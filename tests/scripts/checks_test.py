@@ -70,6 +70,14 @@ class Includes(CheckTest):
         self.write("CMakeLists.txt", MODULES + "holdfast_module(map PATH m DEPENDS viewer)\n")
         self.assert_offence("check_includes", "'map' depends on 'viewer'")
 
+    def test_the_page_shows_the_same_table(self):
+        rows = ["| `core` | `holdfast/core` | – | x |", "| `io` | `holdfast/io` | core | x |",
+                "| `pipeline` | `holdfast/pipeline` | core, io | x |"]
+        self.write("docs/architecture.md", "\n".join(rows) + "\n")
+        self.assertEqual(self.run_check("check_includes"), (0, []))
+        self.write("docs/architecture.md", "\n".join(rows).replace("core, io", "core") + "\n")
+        self.assert_offence("check_includes", "row of module 'pipeline' differs")
+
 
 class Sizes(CheckTest):
     def test_small_files_pass(self):
