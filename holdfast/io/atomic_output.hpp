@@ -8,7 +8,8 @@
 
 namespace holdfast::io {
 
-/// Writes `content` aside and renames it to `path`: a reader sees the old file, the new one, or none.
+/// Writes `content` aside and renames it to `path`: a reader sees the old file, the new one, or
+/// none.
 Status write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
 /// A folder that is filled aside and takes its name on commit(); destroyed without commit() it

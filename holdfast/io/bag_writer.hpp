@@ -11,7 +11,8 @@ namespace holdfast::io {
 
 /// Writes IMU samples and scans as a ROS 1 bag (sensor_msgs/Imu; sensor_msgs/PointCloud2 with
 /// x y z intensity float32, ring uint16, time float32 in seconds from header.stamp).
-/// The file appears under its name only after close(); without close() nothing stays behind.
+/// The file appears under its name only after close(); without close() nothing stays behind. Same
+/// input, same bytes. Times before 1970 or after 2106 cannot be written and are errors.
 class BagWriter {
  public:
   struct Topics {
@@ -19,7 +20,9 @@ class BagWriter {
     std::string imu = "/imu";
   };
 
-  static Result<std::unique_ptr<BagWriter>> create(const std::filesystem::path& path, Topics topics);
+  /// `compress`: chunks are packed with LZ4.
+  static Result<std::unique_ptr<BagWriter>> create(const std::filesystem::path& path, Topics topics,
+                                                   bool compress = false);
   virtual ~BagWriter() = default;
 
   /// header.stamp and the record time are the sample's time.

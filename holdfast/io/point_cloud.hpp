@@ -12,8 +12,8 @@ namespace holdfast::io {
 struct PointCloud {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3f> points;
-  std::vector<float> intensity;       ///< empty, or one value a point
-  std::uint64_t invalid_points = 0;   ///< NaN or infinite points dropped while reading
+  std::vector<float> intensity;      ///< empty, or one value a point
+  std::uint64_t invalid_points = 0;  ///< NaN or infinite points dropped while reading
 };
 
 }  // namespace holdfast::io
