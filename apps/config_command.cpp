@@ -13,8 +13,8 @@ This page is what `holdfast config reference` prints; a test keeps the two equal
 
 A configuration is a YAML file of modules with keys, as `holdfast config default` prints it. A file
 holds differences only: keys that it does not name keep their defaults. Unknown keys, values of a
-wrong type and values out of range are errors that name the file, the line and the nearest known key.
-On the command line, `--set module.key=value` comes after the file. Each run writes the configuration
+wrong type and values out of range are errors that name file and line, and the nearest known key. On
+the command line, `--set module.key=value` comes after the file. Each run writes the configuration
 that it used into its folder. Units stand in the names of the keys (`_m`, `_s`, `_hz`, `_deg`).
 
 )";

@@ -101,7 +101,7 @@ class Sizes(CheckTest):
         for head in ("void f(int a)", "template <class T>\nauto A<T>::f() const -> int",
                      "A::A(int b) : c_{b}, d_(b)", "TEST(A, B)", "A::~A() noexcept"):
             self.write("holdfast/core/a.cpp",
-                       'namespace a {\nconst char* brace = "{";\n' + head + " {\n" + body + "}\n}\n")
+                       'namespace a {\nconst char* c = "{";\n' + head + " {\n" + body + "}\n}\n")
             lines = 61 + head.count("\n")
             self.assert_offence("check_sizes", "a.cpp:3", f"function of {lines} lines")
 
