@@ -13,7 +13,7 @@ constexpr double kLength = 20;
 constexpr double kWidth = 15;
 constexpr double kHeight = 6;
 
-/// A glass front with mullions about every 2.5 m and rails near the floor and at 2.4 m.
+/// A glass front with mullions about every 3 m, a sill rail and a rail at 2.4 m.
 void add_glass_front(WorldBuilder& build, const Vector2d& from, const Vector2d& to, int panes) {
   build.wall({from, to, 0, kHeight, materials::kGlass, {}});
   const Vector2d along = (to - from).normalized();
@@ -21,30 +21,30 @@ void add_glass_front(WorldBuilder& build, const Vector2d& from, const Vector2d& 
   const double yaw = std::atan2(along.y(), along.x());
   const double length = (to - from).norm();
   for (int i = 0; i <= panes; ++i) {
-    const Vector2d at = from + along * (length * i / panes) + 0.06 * inwards;
+    const Vector2d at = from + along * (length * i / panes) + 0.05 * inwards;
     const Vector3d center(at.x(), at.y(), 0.5 * kHeight);
-    build.box({center, {0.07, 0.12, kHeight}, yaw}, materials::kPaintedMetal);
+    build.box({center, {0.05, 0.08, kHeight}, yaw}, materials::kAluminium);
   }
   const Vector2d middle = 0.5 * (from + to) + 0.03 * inwards;
-  build.box({{middle.x(), middle.y(), 0.06}, {length, 0.06, 0.12}, yaw}, materials::kPaintedMetal);
-  build.box({{middle.x(), middle.y(), 2.4}, {length, 0.06, 0.06}, yaw}, materials::kPaintedMetal);
+  build.box({{middle.x(), middle.y(), 0.04}, {length, 0.06, 0.08}, yaw}, materials::kAluminium);
+  build.box({{middle.x(), middle.y(), 2.4}, {length, 0.05, 0.05}, yaw}, materials::kAluminium);
 }
 
 }  // namespace
 
 // A lobby that gives a LiDAR little: glass on all sides, a polished floor, a ceiling out of reach.
-// Columns, mullions and a reception desk are what there is (article, figure 4b).
+// Columns and the frames of the glass are what there is (article, figure 4b).
 Scenario make_hall() {
   WorldBuilder build;
   build.floor({0, 0}, {kLength, kWidth}, 0, materials::kPolishedStone);
   build.ceiling({0, 0}, {kLength, kWidth}, kHeight, materials::kPlaster);
-  add_glass_front(build, {0, 0}, {kLength, 0}, 8);
-  add_glass_front(build, {kLength, 0}, {kLength, kWidth}, 6);
-  add_glass_front(build, {kLength, kWidth}, {0, kWidth}, 7);
-  add_glass_front(build, {0, kWidth}, {0, 0}, 5);
+  add_glass_front(build, {0, 0}, {kLength, 0}, 7);
+  add_glass_front(build, {kLength, 0}, {kLength, kWidth}, 5);
+  add_glass_front(build, {kLength, kWidth}, {0, kWidth}, 6);
+  add_glass_front(build, {0, kWidth}, {0, 0}, 4);
   for (const Vector2d& at :
        {Vector2d(5.2, 4.4), Vector2d(5.0, 10.6), Vector2d(14.6, 4.8), Vector2d(15.1, 10.4)}) {
-    build.cylinder({at.x(), at.y(), 0}, 0.3, kHeight, materials::kConcrete, 64);
+    build.cylinder({at.x(), at.y(), 0}, 0.23, kHeight, materials::kConcrete, 64);
   }
 
   Scenario scenario;

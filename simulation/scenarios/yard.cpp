@@ -49,7 +49,7 @@ void add_green(WorldBuilder& build) {
     ++shape;
   }
   build.box({{30, 17.3, 0.6}, {14, 0.8, 1.2}}, materials::kFoliage);
-  build.box({{64.2, 33, 0.5}, {0.7, 11, 1.0}}, materials::kFoliage);
+  build.box({{63.0, 31.5, 0.5}, {0.7, 9, 1.0}}, materials::kFoliage);
   build.box({{40, 30.5, 0.25}, {2.4, 2.4, 0.5}}, materials::kConcrete);
   build.cylinder({40, 30.5, 0.5}, 0.5, 2.2, materials::kConcrete, 24);
 }

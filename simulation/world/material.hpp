@@ -34,9 +34,10 @@ inline constexpr Material kWood{"wood", 0.5, 1.0, 0.02};
 inline constexpr Material kFabric{"fabric", 0.4, 1.0, 0.01};
 inline constexpr Material kCardboard{"cardboard", 0.45, 1.0, 0.02};
 inline constexpr Material kPaintedMetal{"painted metal", 0.6, 0.98, 0.04};
+inline constexpr Material kAluminium{"aluminium", 0.6, 0.75, 0.1, 0.2, 0.15};
 inline constexpr Material kClothing{"clothing", 0.3, 1.0, 0.0};
-inline constexpr Material kGlass{"glass", 0.9, 0.02, 0.1, 0.9, 0.06, 0.04};
-inline constexpr Material kPolishedStone{"polished stone", 0.2, 0.10, 0.25, 0.6, 0.2, 0.6};
+inline constexpr Material kGlass{"glass", 0.9, 0.012, 0.1, 0.9, 0.06, 0.04};
+inline constexpr Material kPolishedStone{"polished stone", 0.2, 0.07, 0.25, 0.6, 0.2, 0.6};
 
 }  // namespace materials
 
