@@ -8,10 +8,12 @@
 
 namespace holdfast::baselines {
 
-/// Noise of the IMU as continuous-time densities.
+/// Noise of the IMU as continuous-time densities. The defaults are ten times those of the article
+/// (3.1.1): they stand for an unknown IMU on a vehicle, with vibration, scale and timing errors that a
+/// data sheet's white noise leaves out.
 struct ImuNoiseConfig {
-  double gyro_noise_density = 1.7e-4;
-  double accel_noise_density = 2.0e-3;
+  double gyro_noise_density = 1.7e-3;
+  double accel_noise_density = 2.0e-2;
   double gyro_bias_walk = 2.0e-5;
   double accel_bias_walk = 2.0e-4;
 

@@ -26,6 +26,7 @@ struct UpdateOptions {
   int max_iterations = 6;
   double map_sigma_m = 0.001;    ///< error of the map common to a whole scan, position
   double map_sigma_rad = 0.0001; ///< and rotation
+  double scan_sigma_m_s = 0.3;   ///< error of the velocity that the skew of a scan tells
 };
 
 /// What an update found.

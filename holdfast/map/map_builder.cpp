@@ -76,10 +76,13 @@ T median(std::vector<T> values) {
   return *middle;
 }
 
-/// Side of the finest cell: a power of two that gives a cell on a surface about 4 points or more.
-double cell_for(double spacing) {
+/// Side of the finest cell, a power of two: a cell on a surface holds about 4 points or more, and is
+/// large against the noise, so that the layers of a smeared wall fall into one cell.
+double cell_for(double spacing, double noise) {
+  constexpr double kSpacings = 2.0;
+  constexpr double kNoises = 10.0;
   double cell = 0.25;
-  while (cell < 2.0 * spacing && cell < 2.0) cell *= 2.0;
+  while ((cell < kSpacings * spacing || cell < kNoises * noise) && cell < 1.0) cell *= 2.0;
   return cell;
 }
 
@@ -224,8 +227,8 @@ Job plan(const MapSource& source, const MapInfo& info, const std::filesystem::pa
   Job job;
   job.cloud = sort_into_tiles(source.cloud, info.origin);
   if (source.edges) job.edges = sort_into_tiles(*source.edges, info.origin);
-  job.cell_m = cell_for(info.spacing_m);
-  job.fit.noise_m = estimate_noise(job.cloud, job.cell_m);
+  job.fit.noise_m = estimate_noise(job.cloud, cell_for(info.spacing_m, 0.0));
+  job.cell_m = cell_for(info.spacing_m, job.fit.noise_m);
   job.dir = dir;
   for (const auto& [key, indices] : job.cloud.buckets) job.tiles.push_back(key);
   if (job.edges) {

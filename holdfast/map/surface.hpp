@@ -14,7 +14,7 @@ struct Surface {
   Eigen::Vector3f center;  ///< a point of the plane or line, inside the cell it was made for
   Eigen::Vector3f normal;  ///< plane: unit normal of arbitrary sign; line: unit direction
   float sigma_m;           ///< RMS distance of the supporting points to the plane or line
-  std::uint16_t support;   ///< number of supporting points, saturated
+  std::uint16_t support;   ///< supporting points on a disc of one cell's radius, saturated
   SurfaceKind kind;
   std::uint8_t more;       ///< 1: the next Surface belongs to the same cell
 };

@@ -42,6 +42,7 @@ struct Plane {
   double sigma_m;
   double spread_m;  ///< RMS extent along the shorter of its two axes
   int support;
+  double density = 1.0;  ///< support is multiplied by this for Surface::support
 };
 
 using Offsets = std::vector<Eigen::Vector3d>;
@@ -91,7 +92,8 @@ Offsets within(const Offsets& points, double radius) {
 struct Neighbourhood {
   Eigen::Vector3d center;
   Offsets own;
-  Offsets all;  ///< within the wide radius
+  Offsets all;  ///< within the wide radius, thinned out where they are dense
+  double density = 1.0;  ///< points there are for each one in `all`
 };
 
 constexpr std::size_t kPointsPerCell = 24;
@@ -107,6 +109,7 @@ Neighbourhood gather(const PointGrid& grid, const Cell& cell, const FitOptions& 
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
   const Cell low = grid.cell_of((n.center - reach).cast<float>());
   const Cell high = grid.cell_of((n.center + reach).cast<float>());
+  double there = 0;
   for (int z = low.z(); z <= high.z(); ++z) {
     for (int y = low.y(); y <= high.y(); ++y) {
       for (int x = low.x(); x <= high.x(); ++x) {
@@ -115,28 +118,37 @@ Neighbourhood gather(const PointGrid& grid, const Cell& cell, const FitOptions& 
         const std::size_t step = points.size() / kPointsPerCell + 1;
         for (std::size_t i = 0; i < points.size(); i += step) {
           const Eigen::Vector3d d = points.first[i].cast<double>() - n.center;
-          if (d.squaredNorm() < radius * radius) n.all.push_back(d);
+          if (d.squaredNorm() >= radius * radius) continue;
+          n.all.push_back(d);
+          there += static_cast<double>(step);
         }
       }
     }
   }
+  if (!n.all.empty()) n.density = there / static_cast<double>(n.all.size());
   return n;
+}
+
+std::uint16_t saturated(double support) {
+  return static_cast<std::uint16_t>(std::clamp(support, 1.0, 65535.0));
 }
 
 Surface surface_of(const Plane& plane, const Eigen::Vector3d& center) {
   // The centre lies on the plane at the foot of the perpendicular from the cell's centroid.
   const Eigen::Vector3d foot = plane.normal * plane.normal.dot(plane.point);
   return {(center + foot).cast<float>(), plane.normal.cast<float>(),
-          static_cast<float>(plane.sigma_m),
-          static_cast<std::uint16_t>(std::min(plane.support, 65535)), SurfaceKind::kPlane, 0};
+          static_cast<float>(plane.sigma_m), saturated(plane.support * plane.density),
+          SurfaceKind::kPlane, 0};
 }
 
 /// The widest neighbourhood that is one plane.
 std::optional<Plane> single_plane(const Neighbourhood& n, double cell_m,
                                   const FitOptions& options) {
-  const auto wide = robust_plane(n.all, options);
+  auto wide = robust_plane(n.all, options);
   if (!wide) return std::nullopt;
-  const auto narrow = robust_plane(within(n.all, options.narrow_radius * cell_m), options);
+  auto narrow = robust_plane(within(n.all, options.narrow_radius * cell_m), options);
+  wide->density = n.density / (options.wide_radius * options.wide_radius);
+  if (narrow) narrow->density = n.density / (options.narrow_radius * options.narrow_radius);
   if (!narrow) return is_flat(*wide, options) ? wide : std::nullopt;
   const bool wide_is_as_flat =
       is_flat(*wide, options) && 4 * wide->support > 3 * static_cast<int>(n.all.size()) &&
@@ -195,13 +207,19 @@ void remove_near(Offsets& points, const Plane& plane, double band_m) {
   });
 }
 
+// A plane with less of the support of the strongest one in its cell is a ghost of it: a wall smeared
+// by the poses that the map was made with.
+constexpr double kGhostShare = 0.35;
+
 /// Edges, corners and thin walls: planes one after the other, each from the points that the ones
 /// before left over.
 void several_planes(const Neighbourhood& n, double cell_m, const FitOptions& options,
                     std::vector<Surface>& out) {
   constexpr int kMostPlanes = 3;
+  const double radius = 1.4 * options.narrow_radius;
   Offsets own = n.own;
-  Offsets all = within(n.all, 1.4 * options.narrow_radius * cell_m);
+  Offsets all = within(n.all, radius * cell_m);
+  int strongest = 0;
   for (int k = 0; k < kMostPlanes && own.size() >= 3 &&
                   static_cast<int>(all.size()) >= options.min_support; ++k) {
     const auto seed = best_of_triples(own, all, options);
@@ -211,6 +229,9 @@ void several_planes(const Neighbourhood& n, double cell_m, const FitOptions& opt
     plane = plane_through(near_plane(all, *plane, 3.0 * options.noise_m), options.min_support);
     if (!plane || !is_flat(*plane, options)) return;
     if (near_plane(own, *plane, 3.0 * options.noise_m).count < 3) return;
+    strongest = std::max(strongest, plane->support);
+    if (plane->support < kGhostShare * strongest) return;
+    plane->density = n.density / (radius * radius);
     out.push_back(surface_of(*plane, n.center));
     remove_near(own, *plane, 3.5 * options.noise_m);
     remove_near(all, *plane, 3.5 * options.noise_m);
@@ -230,7 +251,7 @@ void line_through(const Neighbourhood& n, double cell_m, const FitOptions& optio
   const Eigen::Vector3d foot = p.centroid - direction * direction.dot(p.centroid);
   out.push_back({(n.center + foot).cast<float>(), direction.cast<float>(),
                  static_cast<float>(sigma),
-                 static_cast<std::uint16_t>(std::min(m.count, 65535)), SurfaceKind::kLine, 0});
+                 saturated(m.count * n.density), SurfaceKind::kLine, 0});
 }
 
 }  // namespace

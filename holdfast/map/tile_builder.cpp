@@ -63,6 +63,40 @@ double borrow_distance(const Surface& s, const Eigen::Vector3f& middle, double c
   return std::hypot(along_normal, std::max(0.0, lateral - cell_m));
 }
 
+/// A thin plane beside a parallel one with many times its support: a smeared copy of the same wall.
+bool is_ghost_of(const Surface& weak, const Surface& strong, double cell_m) {
+  constexpr int kTimesTheSupport = 4;
+  return strong.support >= kTimesTheSupport * weak.support &&
+         std::abs(weak.normal.dot(strong.normal)) > 0.9F &&
+         std::abs(strong.normal.dot(weak.center - strong.center)) < 1.5 * cell_m;
+}
+
+bool is_ghost(SurfaceGrid& grid, const std::vector<Surface>& surfaces, const Cell& cell,
+              const Surface& surface) {
+  for (int n = 0; n < 27; ++n) {
+    const Cell c = cell + Cell(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+    if (!grid.covers(c) || grid.first(c) == 0) continue;
+    for (std::uint32_t i = grid.first(c);; ++i) {
+      if (is_ghost_of(surface, surfaces[i - 1], grid.cell_m())) return true;
+      if (surfaces[i - 1].more == 0) break;
+    }
+  }
+  return false;
+}
+
+/// Takes out the cells whose only plane is a ghost; they will borrow the true one.
+void drop_ghosts(SurfaceGrid& grid, const std::vector<Surface>& surfaces,
+                 std::vector<Cell>& fitted) {
+  std::vector<Cell> ghosts;
+  for (const Cell& cell : fitted) {
+    const Surface& s = surfaces[grid.first(cell) - 1];
+    if (s.more == 0 && s.kind == SurfaceKind::kPlane && is_ghost(grid, surfaces, cell, s)) {
+      ghosts.push_back(cell);
+    }
+  }
+  for (const Cell& cell : ghosts) grid.first(cell) = 0;
+}
+
 /// First surface of the neighbour that lies nearest to an empty cell.
 std::uint32_t borrowed(SurfaceGrid& grid, const std::vector<Surface>& surfaces, const Cell& cell) {
   const Eigen::Vector3f middle =
@@ -168,6 +202,7 @@ Level build_level(const TilePoints& points, double cell_m, int number, const Fit
   level.header.cell_m = static_cast<float>(cell_m);
   std::vector<Cell> fitted;
   SurfaceGrid grid = fit_level(points, cell_m, number, options, fitted, level.surfaces);
+  drop_ghosts(grid, level.surfaces, fitted);
   lay_out_blocks(fitted, level);
   fill_blocks(grid, level);
   level.header.surface_count = static_cast<std::uint32_t>(level.surfaces.size());
