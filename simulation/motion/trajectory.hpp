@@ -28,8 +28,8 @@ Eigen::Quaterniond rotation_of(const PoseVector& pose);
 class Trajectory {
  public:
   /// `control[i]` belongs to the time begin + i * knot; at least 6. The motion stays near the
-  /// control poses (it is a smoothed version of them) and is defined 2 knots after the first and 3
-  /// knots before the last.
+  /// control poses (it is a smoothed version of them) and is defined from 2 knots after the
+  /// first to 2 knots before the last.
   Trajectory(TimeNs begin, TimeNs knot, std::vector<PoseVector> control);
 
   /// Clamped to the times for which the motion is defined.

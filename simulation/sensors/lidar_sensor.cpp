@@ -179,6 +179,9 @@ void LidarSensor::measure_chunk(Chunk& chunk, const Surroundings& around) const 
   RandomStream returns = chunk.stream(seed_, "lidar.return");
   RandomStream noise = chunk.stream(seed_, "lidar.range_noise");
   for (std::size_t i = 0; i < chunk.range.size(); ++i) {
+    // Drawn for every ray, so that what one ray meets does not change the noise of the others.
+    const double chance = returns.uniform();
+    const double error = model_.range_sigma_m * noise.normal();
     if (!std::isfinite(chunk.range[i])) continue;
     const std::size_t column = chunk.begin + i / beams;
     const std::size_t beam = i % beams;
@@ -186,9 +189,7 @@ void LidarSensor::measure_chunk(Chunk& chunk, const Surroundings& around) const 
     const Material& material =
         chunk.material[i] == kWalker ? materials::kClothing : around.materials[chunk.material[i]];
     const double cos_incidence = chunk.cos_incidence[i];
-    const double probability = material.return_probability(cos_incidence);
-    const bool returned = probability >= 1 || returns.uniform() < probability;
-    const double error = model_.range_sigma_m * noise.normal();
+    const bool returned = chance < material.return_probability(cos_incidence);
     if (!(returned || model_.keep_all_returns)) continue;
     if (is_blind(around.blind, chunk.scan_begin + offset)) continue;
     const double range = chunk.range[i] + error;

@@ -1,0 +1,143 @@
+#include "simulation/sensors/imu_sensor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/simulation/support.hpp"
+#include "tests/simulation/tolerances.hpp"
+
+namespace holdfast::simulation {
+namespace {
+
+using Eigen::Vector3d;
+using testing::make;
+using testing::noise_free;
+using testing::record;
+
+constexpr double kStep = 0.005;
+
+/// Rotation over two intervals from three rates: Simpson's rule and the first commutator (fourth
+/// order Magnus expansion), and over the first of the two from the parabola through the same rates.
+Eigen::Quaterniond two_steps(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return so3::exp(kStep / 3 * (a + 4 * b + c) + 4 * kStep * kStep / 12 * a.cross(c));
+}
+Eigen::Quaterniond one_step(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return so3::exp(kStep / 12 * (5 * a + 8 * b - c) + kStep * kStep / 12 * a.cross(b));
+}
+
+struct Integrated {
+  SE3 pose;
+  Vector3d velocity;
+};
+
+Integrated integrate(const std::vector<ImuSample>& imu, Integrated state, const Vector3d& g) {
+  for (std::size_t i = 0; i + 2 < imu.size(); i += 2) {
+    const auto& [t0, w0, f0] = imu[i];
+    const auto& [t1, w1, f1] = imu[i + 1];
+    const auto& [t2, w2, f2] = imu[i + 2];
+    const Eigen::Quaterniond middle = state.pose.rotation * one_step(w0, w1, w2);
+    const Eigen::Quaterniond end = (state.pose.rotation * two_steps(w0, w1, w2)).normalized();
+    const Vector3d a0 = state.pose.rotation * f0 + g;
+    const Vector3d a1 = middle * f1 + g;
+    const Vector3d a2 = end * f2 + g;
+    const double h = 2 * kStep;
+    state.pose.translation += h * state.velocity + h * h / 6 * (a0 + 2 * a1);
+    state.velocity += h / 6 * (a0 + 4 * a1 + a2);
+    state.pose.rotation = end;
+  }
+  return state;
+}
+
+TEST(ImuSensor, WithoutNoiseIntegratesBackToTheTruth) {
+  for (const char* scenario : {"box", "corridor", "hall", "office"}) {
+    SimulationOptions options = noise_free(scenario, 30);
+    options.lidar.columns = 1;
+    const auto simulation = make(options);
+    const auto log = record(*simulation);
+    const TrueState begin = simulation->state_at(simulation->start_time());
+    const Integrated end =
+        integrate(log.imu, {begin.T_map_body, begin.v_map}, options.imu.gravity_map);
+    ASSERT_EQ(log.imu.size(), 6001U);
+    const SE3 truth = simulation->truth_at(log.imu.back().t);
+    EXPECT_LT(so3::angle_between(end.pose.rotation, truth.rotation),
+              tolerances::integrated_attitude(30, 2 * kStep));
+    EXPECT_LT((end.pose.translation - truth.translation).norm(),
+              tolerances::integrated_position(30, 2 * kStep));
+  }
+}
+
+TEST(ImuSensor, AtRestReadsGravityUpwards) {
+  const auto simulation = make(noise_free("box", 2));
+  for (const ImuSample& sample : record(*simulation).imu) {
+    EXPECT_NEAR((sample.accel_m_s2 - Vector3d(0, 0, 9.81)).norm(), 0, 1e-8);
+    EXPECT_NEAR(sample.gyro_rad_s.norm(), 0, 1e-10);
+  }
+}
+
+TEST(ImuSensor, HasTheNoiseDensitiesOfItsModel) {
+  SimulationOptions options;
+  options.scenario = "corridor";
+  options.duration_s = 60;
+  options.lidar.columns = 1;
+  const auto simulation = make(options);
+  double gyro = 0;
+  double accel = 0;
+  double lagged = 0;
+  Vector3d last = Vector3d::Zero();
+  const auto log = record(*simulation);
+  for (const ImuSample& sample : log.imu) {
+    const TrueState truth = simulation->state_at(sample.t);
+    const Vector3d felt =
+        truth.T_map_body.rotation.conjugate() * (truth.a_map - options.imu.gravity_map);
+    const Vector3d gyro_noise = sample.gyro_rad_s - truth.omega_body - truth.gyro_bias;
+    gyro += gyro_noise.squaredNorm();
+    accel += (sample.accel_m_s2 - felt - truth.accel_bias).squaredNorm();
+    lagged += gyro_noise.dot(last);
+    last = gyro_noise;
+  }
+  const double n = 3.0 * static_cast<double>(log.imu.size());
+  const double gyro_variance = std::pow(options.imu.gyro_noise_density, 2) * 200;
+  const double accel_variance = std::pow(options.imu.accel_noise_density, 2) * 200;
+  EXPECT_NEAR(gyro / n / gyro_variance, 1, tolerances::variance_error(n));
+  EXPECT_NEAR(accel / n / accel_variance, 1, tolerances::variance_error(n));
+  EXPECT_NEAR(lagged / n / gyro_variance, 0, tolerances::mean_error(1, n)) << "white";
+}
+
+TEST(ImuSensor, BiasesWalkAsTheRootOfTime) {
+  const ImuModel model;
+  constexpr int kSeeds = 40;
+  for (const std::size_t samples : {201U, 2001U}) {
+    double gyro = 0;
+    double accel = 0;
+    double start = 0;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      const ImuSensor imu(model, static_cast<std::uint64_t>(seed), samples, {});
+      gyro += (imu.bias(samples - 1).gyro - imu.bias(0).gyro).squaredNorm();
+      accel += (imu.bias(samples - 1).accel - imu.bias(0).accel).squaredNorm();
+      start += imu.bias(0).gyro.squaredNorm();
+    }
+    const double n = 3 * kSeeds;
+    const double seconds = static_cast<double>(samples - 1) * kStep;
+    EXPECT_NEAR(gyro / n / (std::pow(model.gyro_bias_walk, 2) * seconds), 1,
+                tolerances::variance_error(n));
+    EXPECT_NEAR(accel / n / (std::pow(model.accel_bias_walk, 2) * seconds), 1,
+                tolerances::variance_error(n));
+    EXPECT_NEAR(start / n / std::pow(model.gyro_bias_initial, 2), 1, tolerances::variance_error(n));
+  }
+}
+
+TEST(ImuSensor, BiasJumpStepsByItsSizeAndStays) {
+  const ImuModel model = ImuModel::perfect();
+  RandomStream random(1, "jump");
+  const BiasJump jump = ImuSensor::draw_jump(model, kSecond, random);
+  EXPECT_NEAR(jump.gyro.norm(), 0.03, 1e-15);
+  EXPECT_NEAR(jump.accel.norm(), 0.3, 1e-15);
+  const ImuSensor imu(model, 1, 1001, {jump});
+  EXPECT_EQ(imu.bias(199).gyro.norm(), 0);
+  EXPECT_EQ(imu.bias(200).gyro, jump.gyro);
+  EXPECT_EQ(imu.bias(1000).accel, jump.accel);
+}
+
+}  // namespace
+}  // namespace holdfast::simulation
