@@ -1,0 +1,152 @@
+#include "simulation/scenario.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "simulation/world/ray_caster.hpp"
+#include "tests/simulation/support.hpp"
+
+namespace holdfast::simulation {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using testing::make;
+using testing::record;
+
+/// Distance from `p` to the nearest surface around it at the same height.
+double clearance(const RayCaster& caster, const Vector3d& p) {
+  double least = 100;
+  HitPacket hits;
+  for (int packet = 0; packet < 4; ++packet) {
+    RayPacket rays{};
+    for (int i = 0; i < RayPacket::kSize; ++i) {
+      const double angle = 2 * std::numbers::pi * (packet * RayPacket::kSize + i) / 32;
+      rays.x[i] = static_cast<float>(p.x());
+      rays.y[i] = static_cast<float>(p.y());
+      rays.z[i] = static_cast<float>(p.z());
+      rays.dx[i] = static_cast<float>(std::cos(angle));
+      rays.dy[i] = static_cast<float>(std::sin(angle));
+    }
+    caster.cast(rays, 0, 100, hits);
+    for (const float range : hits.range) least = std::min(least, static_cast<double>(range));
+  }
+  return least;
+}
+
+std::vector<TimeNs> kidnaps_every_ten_seconds() {
+  std::vector<TimeNs> out;
+  for (int i = 1; i < 9; ++i) out.push_back(i * 10 * kSecond);
+  return out;
+}
+
+TEST(Scenario, RobotsKeepClearOfEverything) {
+  for (const ScenarioInfo& info : scenarios()) {
+    const Scenario scenario = info.make();
+    EXPECT_EQ(scenario.name, info.name);
+    const RayCaster caster(scenario.world);
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const bool kidnapped = seed > 3;
+      const Drive drive =
+          Drive::plan(scenario.route, scenario.style, seed, 90 * kSecond,
+                      kidnapped ? kidnaps_every_ten_seconds() : std::vector<TimeNs>{});
+      for (TimeNs t = 0; t < drive.duration(); t += kSecond / 5) {
+        const Vector3d body = drive.at(t).T_map_body.translation;
+        for (const double height : {0.3, 0.6, 1.0}) {
+          ASSERT_GT(clearance(caster, {body.x(), body.y(), height}), 0.3)
+              << info.name << " seed " << seed << " at " << to_seconds(t) << " s, ("
+              << body.transpose() << ")";
+        }
+      }
+    }
+  }
+}
+
+TEST(Scenario, PeopleWalkAtTheirPaceAndKeepAway) {
+  const Scenario office = *make_scenario("office");
+  ASSERT_EQ(office.walkers.size(), 5U);
+  const RayCaster caster(office.world);
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Drive robot = Drive::plan(office.route, office.style, seed, std::nullopt, {});
+    const Walkers people(office.walkers, robot, seed);
+    std::vector<double> way(people.size());
+    for (TimeNs t = 0; t < robot.duration(); t += kSecond / 10) {
+      const Vector2d body = robot.at(t).T_map_body.translation.head<2>();
+      for (std::size_t i = 0; i < people.size(); ++i) {
+        const MotionState person = people.at(i, t);
+        const Vector2d p = person.T_map_body.translation.head<2>();
+        ASSERT_GT((p - body).norm(), 0.6);
+        ASSERT_LT(person.v_map.norm(), 1.05);
+        ASSERT_GT(clearance(caster, {p.x(), p.y(), 1.2}), 0.15) << i << ": " << p.transpose();
+        way[i] += 0.1 * person.v_map.norm();
+        for (std::size_t k = 0; k < i; ++k) {
+          const Vector2d q = people.at(k, t).T_map_body.translation.head<2>();
+          ASSERT_GT((p - q).norm(), 0.4);
+        }
+      }
+    }
+    for (std::size_t i = 0; i < people.size(); ++i) {
+      const double mean = way[i] / to_seconds(robot.duration());
+      EXPECT_GT(mean, 0.7 * office.walkers[i].speed_m_s) << "person " << i << ", seed " << seed;
+    }
+  }
+}
+
+/// Mean, least and most returns of a scan over a drive of 40 s.
+struct Returns {
+  double mean = 0;
+  std::size_t least = 1'000'000;
+  std::size_t most = 0;
+};
+
+Returns returns_in(const char* scenario, std::uint64_t seed) {
+  SimulationOptions options;
+  options.scenario = scenario;
+  options.seed = seed;
+  options.duration_s = 40;
+  options.threads = 2;
+  Returns out;
+  const auto log = record(*make(options));
+  for (const Scan& scan : log.scans) {
+    out.mean += static_cast<double>(scan.points.size()) / static_cast<double>(log.scans.size());
+    out.least = std::min(out.least, scan.points.size());
+    out.most = std::max(out.most, scan.points.size());
+  }
+  return out;
+}
+
+TEST(Scenario, TheHallReturnsAboutThreeThousandPoints) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Returns hall = returns_in("hall", seed);
+    EXPECT_GT(hall.mean, 2700);
+    EXPECT_LT(hall.mean, 3500);
+    EXPECT_GT(hall.least, 2000U);
+    EXPECT_LT(hall.most, 4500U);
+  }
+}
+
+TEST(Scenario, CorridorAndOfficeReturnNearlyEveryRay) {
+  for (const char* name : {"corridor", "office"})
+    EXPECT_GT(returns_in(name, 1).mean, 28000) << name;
+}
+
+TEST(Scenario, WaysAreAsLongAsTheArticleSays) {
+  EXPECT_NEAR(make_scenario("corridor")->route.length(), 100, 3);
+  EXPECT_EQ(make_scenario("corridor")->style.distance_m, 100);
+  EXPECT_EQ(make_scenario("office")->style.distance_m, 200);
+  EXPECT_EQ(make_scenario("hall")->style.distance_m, 150);
+}
+
+TEST(Scenario, AnUnknownNameIsAnErrorWithTheKnownOnes) {
+  const auto scenario = make_scenario("moon");
+  ASSERT_FALSE(scenario);
+  for (const ScenarioInfo& info : scenarios()) {
+    EXPECT_THAT(scenario.error().message, ::testing::HasSubstr(std::string(info.name)));
+  }
+}
+
+}  // namespace
+}  // namespace holdfast::simulation
