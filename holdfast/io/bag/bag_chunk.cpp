@@ -28,12 +28,14 @@ Unpacked unpack_bz2(std::string_view packed, std::size_t size, Buffer& out) {
   if (!bz2.ready) return Unpacked::kDamaged;
   bz2.stream.next_in = const_cast<char*>(packed.data());
   bz2.stream.avail_in = static_cast<unsigned>(packed.size());
-  bz2.stream.next_out = out.make_room(size);
-  bz2.stream.avail_out = static_cast<unsigned>(size);
+  // A byte more than needed, so that the decoder goes on to the checksum.
+  bz2.stream.next_out = out.make_room(size + 1);
+  bz2.stream.avail_out = static_cast<unsigned>(size + 1);
   const int code = BZ2_bzDecompress(&bz2.stream);
-  if (code != BZ_OK && code != BZ_STREAM_END) return Unpacked::kDamaged;
-  out.set_size(size - bz2.stream.avail_out);
-  return out.bytes().size() == size ? Unpacked::kWhole : Unpacked::kEndsEarly;
+  const std::size_t done = size + 1 - bz2.stream.avail_out;
+  if ((code != BZ_OK && code != BZ_STREAM_END) || done > size) return Unpacked::kDamaged;
+  out.set_size(done);
+  return done == size ? Unpacked::kWhole : Unpacked::kEndsEarly;
 }
 
 Unpacked unpack_lz4(std::string_view packed, std::size_t size, Buffer& out) {

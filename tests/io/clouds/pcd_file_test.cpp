@@ -5,7 +5,7 @@
 
 #include "holdfast/io/cloud_file.hpp"
 #include "holdfast/io/clouds/lzf.hpp"
-#include "tests/io/cloud_bytes.hpp"
+#include "tests/io/clouds/cloud_bytes.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace holdfast::io::testing {
@@ -53,8 +53,8 @@ TEST_F(PcdFile, AsciiIsReadWithFieldsInAnyOrder) {
 }
 
 TEST_F(PcdFile, FieldsWithACountArePassedOver) {
-  const auto ascii = cloud_of(header("x _ y z", "4 1 4 4", "F U F F", 1, "ascii", "1 3 1 1") +
-                              "1 9 9 9 2 3\n");
+  const auto ascii =
+      cloud_of(header("x _ y z", "4 1 4 4", "F U F F", 1, "ascii", "1 3 1 1") + "1 9 9 9 2 3\n");
   EXPECT_EQ(ascii.points.at(0), Eigen::Vector3f(1, 2, 3));
   std::string bytes = header("x _ y z", "4 1 4 4", "F U F F", 1, "binary", "1 3 1 1");
   files::append(bytes, 1.0F);
@@ -66,9 +66,8 @@ TEST_F(PcdFile, FieldsWithACountArePassedOver) {
 
 TEST_F(PcdFile, BinaryIsReadWithEachTypeOfIntensity) {
   const auto read = [this](const char* type, const char* size, auto value) {
-    std::string bytes =
-        header("intensity x y z", std::string(size) + " 4 4 4", std::string(type) + " F F F", 2,
-               "binary");
+    std::string bytes = header("intensity x y z", std::string(size) + " 4 4 4",
+                               std::string(type) + " F F F", 2, "binary");
     for (int i = 0; i < 2; ++i) {
       files::append(bytes, value);
       for (const float v : {1.0F, 2.0F, 3.0F}) files::append(bytes, v);
@@ -99,8 +98,7 @@ TEST_F(PcdFile, BinaryCompressedIsReadColumnByColumn) {
   for (std::size_t i = 0; i < kPoints; ++i) files::append(columns, static_cast<float>(3 * i));
   const std::string packed = lzf_pack(columns);
   ASSERT_LT(packed.size(), columns.size() / 2);
-  std::string bytes =
-      header("x intensity y z", "4 1 4 4", "F U F F", kPoints, "binary_compressed");
+  std::string bytes = header("x intensity y z", "4 1 4 4", "F U F F", kPoints, "binary_compressed");
   files::append(bytes, static_cast<std::uint32_t>(packed.size()));
   files::append(bytes, static_cast<std::uint32_t>(columns.size()));
   const auto cloud = cloud_of(bytes + packed);
@@ -119,7 +117,12 @@ TEST_F(PcdFile, BinaryCompressedIsReadColumnByColumn) {
 TEST_F(PcdFile, LzfTokensAreUnpackedAsTheFormatSays) {
   std::string out;
   // Three literals, a copy of 5 from 3 back, a long copy of 9 from 1 back.
-  const std::string packed("\x02" "abc" "\x60\x02" "\xe0\x00\x00", 9);
+  const std::string packed(
+      "\x02"
+      "abc"
+      "\x60\x02"
+      "\xe0\x00\x00",
+      9);
   ASSERT_TRUE(clouds::lzf_decompress(packed, 17, out));
   EXPECT_EQ(out, "abcabcabbbbbbbbbb");
   EXPECT_FALSE(clouds::lzf_decompress(packed, 16, out));
@@ -137,7 +140,8 @@ TEST_F(PcdFile, FarCoordinatesKeepTheirMillimetresThroughAnOrigin) {
   const auto cloud = cloud_of(bytes);
   EXPECT_EQ(cloud.origin, Eigen::Vector3d(458123, 5428123, 117));  // whole metres
   for (std::size_t i = 0; i < 3; ++i) {
-    const Eigen::Vector3d expected = far + Eigen::Vector3d::Constant(std::array{0.0, 0.001, 10.0}[i]);
+    const Eigen::Vector3d expected =
+        far + Eigen::Vector3d::Constant(std::array{0.0, 0.001, 10.0}[i]);
     const Eigen::Vector3d found = cloud.origin + cloud.points[i].cast<double>();
     EXPECT_LE((found - expected).lpNorm<Eigen::Infinity>(), 1e-6);  // a float near 10 m
   }
@@ -178,7 +182,8 @@ TEST_F(PcdFile, CoordinatesNearTheOriginKeepEveryBit) {
 }
 
 TEST_F(PcdFile, FilesThatEndEarlySayHowManyPointsAreThere) {
-  std::string bytes = header("x y z", "4 4 4", "F F F", 10, "binary") + std::string(12 * 7 + 3, 'a');
+  std::string bytes =
+      header("x y z", "4 4 4", "F F F", 10, "binary") + std::string(12 * 7 + 3, 'a');
   EXPECT_THAT(error_of(bytes),
               AllOf(HasSubstr("c.pcd: ends early"), HasSubstr("10 points"), HasSubstr("7 found")));
   EXPECT_THAT(error_of(header("x y z", "4 4 4", "F F F", 3, "ascii") + "1 2 3\n"),
@@ -239,8 +244,8 @@ TEST_F(PcdFile, OnlyKnownExtensionsAreReadAndWritten) {
   const auto written = write_cloud(folder / "c.xyz", PointCloud{});
   ASSERT_FALSE(written);
   EXPECT_THAT(written.error().message, HasSubstr("extension '.xyz'"));
-  EXPECT_TRUE(read_cloud(
-      folder.put("C.PCD", header("x y z", "4 4 4", "F F F", 1, "ascii") + "1 2 3\n")));
+  EXPECT_TRUE(
+      read_cloud(folder.put("C.PCD", header("x y z", "4 4 4", "F F F", 1, "ascii") + "1 2 3\n")));
   EXPECT_FALSE(read_cloud(folder / "none.pcd"));
 }
 

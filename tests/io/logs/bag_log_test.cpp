@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/io/message_builder.hpp"
+#include "tests/io/logs/message_builder.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace holdfast::io::testing {
@@ -46,8 +46,8 @@ TEST_F(BagLog, AnImuSampleKeepsEveryBit) {
 
 TEST_F(BagLog, NonFinitePointsAreDroppedAndCounted) {
   add_imu();
-  bag.add(plain_cloud(kStart, {{1, 2, 3}, {kNan, 0, 0}, {4, kInfinity, 0}, {0, 0, -kInfinity},
-                               {5, 6, 7}}));
+  bag.add(plain_cloud(kStart,
+                      {{1, 2, 3}, {kNan, 0, 0}, {4, kInfinity, 0}, {0, 0, -kInfinity}, {5, 6, 7}}));
   const auto log = content();
   ASSERT_EQ(log.scans.size(), 1U);
   EXPECT_EQ(log.scans[0].points.size(), 2U);
@@ -195,7 +195,10 @@ TEST_F(BagLog, BadMessagesAreCountedAndSurvived) {
   bad([](CloudBytes& c) { c.width = 3; });
   bad([](CloudBytes& c) { c.width = c.height = 0xffffffff; });
   bad([](CloudBytes& c) { c.point_step = 0; });
-  bad([](CloudBytes& c) { c.height = 2; c.row_step = 0; });
+  bad([](CloudBytes& c) {
+    c.height = 2;
+    c.row_step = 0;
+  });
   bad([](CloudBytes& c) { c.fields[2].offset = 9; });  // z ends behind the point
   bad([](CloudBytes& c) { c.fields[0].code = kI16; });
   bad([](CloudBytes& c) { c.fields.pop_back(); });
@@ -236,8 +239,8 @@ TEST_F(BagLog, FieldsOfOtherTypesAndBigEndianAreRead) {
     CloudBytes cloud;
     cloud.stamp = kStart + (big ? kPeriod : 0);
     cloud.big_endian = big;
-    cloud.fields = {{"channel", 0, kU8}, {"x", 1, kF64, 0}, {"y", 9, kF64}, {"z", 17, kF64},
-                    {"intensity", 25, kU16}, {"rgb", 0, kF32}};
+    cloud.fields = {{"channel", 0, kU8}, {"x", 1, kF64, 0},       {"y", 9, kF64},
+                    {"z", 17, kF64},     {"intensity", 25, kU16}, {"rgb", 0, kF32}};
     cloud.point_step = 27;
     cloud.width = 2;
     const auto put = [&](auto value) {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "holdfast/io/cloud_file.hpp"
-#include "tests/io/cloud_bytes.hpp"
+#include "tests/io/clouds/cloud_bytes.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace holdfast::io::testing {
@@ -12,12 +12,11 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr std::string_view kXyz =
-    "property float x\nproperty float y\nproperty float z\n";
+constexpr std::string_view kXyz = "property float x\nproperty float y\nproperty float z\n";
 
 std::string header(std::string_view format, std::string_view body) {
-  return "ply\nformat " + std::string(format) + " 1.0\ncomment made by hand\n" +
-         std::string(body) + "end_header\n";
+  return "ply\nformat " + std::string(format) + " 1.0\ncomment made by hand\n" + std::string(body) +
+         "end_header\n";
 }
 
 struct PlyFile : ::testing::Test {
@@ -36,12 +35,12 @@ struct PlyFile : ::testing::Test {
 };
 
 TEST_F(PlyFile, AsciiIsReadWithOtherPropertiesAndFaces) {
-  const auto cloud = cloud_of(
-      header("ascii",
-             "element vertex 2\nproperty uchar red\nproperty double z\nproperty double x\n"
-             "property double y\nproperty ushort intensity\n"
-             "element face 1\nproperty list uchar int vertex_indices\n") +
-      "255 3 1 2 700\n0 -6 4 5 8\n3 0 1 1\n");
+  const auto cloud =
+      cloud_of(header("ascii",
+                      "element vertex 2\nproperty uchar red\nproperty double z\nproperty double x\n"
+                      "property double y\nproperty ushort intensity\n"
+                      "element face 1\nproperty list uchar int vertex_indices\n") +
+               "255 3 1 2 700\n0 -6 4 5 8\n3 0 1 1\n");
   ASSERT_EQ(cloud.points.size(), 2U);
   EXPECT_EQ(cloud.points[0], Eigen::Vector3f(1, 2, 3));
   EXPECT_EQ(cloud.points[1], Eigen::Vector3f(4, 5, -6));
@@ -73,7 +72,8 @@ TEST_F(PlyFile, LittleAndBigEndianGiveTheSamePoints) {
 TEST_F(PlyFile, ElementsBeforeTheVerticesArePassedOver) {
   const std::string body =
       "element camera 2\nproperty float focal\nproperty list uchar ushort pixels\n"
-      "element vertex 1\n" + std::string(kXyz);
+      "element vertex 1\n" +
+      std::string(kXyz);
   std::string bytes = header("binary_big_endian", body);
   append_big_endian(bytes, 50.0F);
   bytes.push_back(0);
@@ -83,7 +83,9 @@ TEST_F(PlyFile, ElementsBeforeTheVerticesArePassedOver) {
   EXPECT_EQ(cloud_of(bytes).points.at(0), Eigen::Vector3f(1, 2, 3));
   EXPECT_EQ(cloud_of(header("ascii", body) + "50 0\n60 2 7 8\n1 2 3\n").points.at(0),
             Eigen::Vector3f(1, 2, 3));
-  EXPECT_THAT(error_of(header("binary_big_endian", body) + std::string(4, '\x7f') + "\xff" "ab"),
+  EXPECT_THAT(error_of(header("binary_big_endian", body) + std::string(4, '\x7f') +
+                       "\xff"
+                       "ab"),
               HasSubstr("ends early: in element 'camera'"));
 }
 
@@ -129,7 +131,8 @@ TEST_F(PlyFile, ErrorsNameWhatIsWrong) {
               HasSubstr("line 2: 'format binary_middle_endian 1.0' is not a line of a PLY header"));
   EXPECT_THAT(error_of(header("ascii", "element vertex many\n")), HasSubstr("line 4"));
   EXPECT_THAT(error_of(header("ascii", "property float x\n")), HasSubstr("line 4"));
-  EXPECT_THAT(error_of(header("ascii", "element vertex 1\nproperty real x\n")), HasSubstr("line 5"));
+  EXPECT_THAT(error_of(header("ascii", "element vertex 1\nproperty real x\n")),
+              HasSubstr("line 5"));
   EXPECT_THAT(error_of(header("ascii", "element face 0\nproperty list uchar int i\n")),
               HasSubstr("has no element 'vertex'"));
   EXPECT_THAT(error_of(header("ascii", "element vertex 1\nproperty float x\nproperty float y\n")),

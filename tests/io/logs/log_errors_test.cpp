@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/io/message_builder.hpp"
+#include "tests/io/logs/message_builder.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace holdfast::io::testing {
@@ -25,8 +25,8 @@ struct LogErrors : ::testing::Test {
     const std::string cloud = plain_cloud(kStart, {{1, 2, 3}}).serialised();
     const std::string imu = ros::serialise_imu(imu_at(kStart), 0, "imu");
     for (const std::size_t topic : used) {
-      const bool is_cloud = topic == 0 || (topic >= 2 && further[topic - 2].type ==
-                                                             ros::kPointCloud2Type);
+      const bool is_cloud =
+          topic == 0 || (topic >= 2 && further[topic - 2].type == ros::kPointCloud2Type);
       bag.add(topic, kStart, is_cloud ? cloud : imu);
     }
     return bag.finish();
@@ -86,8 +86,8 @@ TEST_F(LogErrors, ATopicOfAnotherTypeIsAnError) {
 }
 
 TEST_F(LogErrors, AnotherVersionOfAMessageIsAnError) {
-  const auto path = bag_with(
-      {{"/old", ros::kImuType, "0123456789abcdef0123456789abcdef", ""}}, {0, 2});
+  const auto path =
+      bag_with({{"/old", ros::kImuType, "0123456789abcdef0123456789abcdef", ""}}, {0, 2});
   EXPECT_THAT(error_of_log(path),
               AllOf(HasSubstr("topic '/old' holds another version of sensor_msgs/Imu"),
                     HasSubstr("0123456789abcdef0123456789abcdef"), HasSubstr("6a62c6da")));
@@ -108,8 +108,10 @@ TEST_F(LogErrors, ALogWithoutAScanIsAnError) {
 TEST_F(LogErrors, FieldsOfTypesTheyCannotHaveAreNamed) {
   const auto error_with = [this](std::size_t index, CloudBytes::Field field) {
     auto cloud = plain_cloud(kStart, {{1, 2, 3}, {1, 2, 3}});
-    if (index < 3) cloud.fields[index] = std::move(field);
-    else cloud.fields.push_back(std::move(field));
+    if (index < 3)
+      cloud.fields[index] = std::move(field);
+    else
+      cloud.fields.push_back(std::move(field));
     return error_of_cloud(cloud);
   };
   EXPECT_THAT(error_with(0, {"x", 0, kI16}),
@@ -160,8 +162,9 @@ TEST_F(LogErrors, FilesThatAreNoLogsSayWhatWasExpected) {
               AllOf(HasSubstr("a.mcap: extension '.mcap'"), HasSubstr("ROS 1 bag (.bag)")));
   EXPECT_THAT(error_of_log(folder.put("a.bag", "PK")), HasSubstr("a.bag: is not a ROS 1 bag"));
   EXPECT_THAT(error_of_log(folder.put("b.bag", "")), HasSubstr("b.bag: is not a ROS 1 bag"));
-  EXPECT_THAT(error_of_log(folder.put("c.bag", "#ROSBAG V1.2\n#")),
-              AllOf(HasSubstr("older format '#ROSBAG V1.2'"), HasSubstr("expected '#ROSBAG V2.0'")));
+  EXPECT_THAT(
+      error_of_log(folder.put("c.bag", "#ROSBAG V1.2\n#")),
+      AllOf(HasSubstr("older format '#ROSBAG V1.2'"), HasSubstr("expected '#ROSBAG V2.0'")));
   EXPECT_THAT(error_of_log(folder.put("d.bag", "#ROSBAG V2.0\n")),
               HasSubstr("d.bag: ends early: it has no index and no readable message"));
 }
