@@ -84,6 +84,16 @@ TEST(LidarSensor, MovingCastsEachRayAtItsOwnTime) {
   expect_on_walls(*simulation, log.scans);
 }
 
+TEST(LidarSensor, MayBeMountedAnyWayRound) {
+  SimulationOptions options = noise_free("box", 8);
+  options.lidar.T_body_lidar.translation = {-0.2, 0.3, 0.4};
+  options.lidar.T_body_lidar.rotation = so3::exp(Eigen::Vector3d(1.2, -0.7, 2.0));
+  const auto simulation = make(options);
+  auto log = record(*simulation);
+  log.scans.erase(log.scans.begin(), log.scans.begin() + 50);
+  expect_on_walls(*simulation, log.scans);
+}
+
 TEST(LidarSensor, FiresItsBeamsInOrderWhileTheHeadTurns) {
   const auto simulation = make(noise_free("box", 1));
   const auto log = record(*simulation);
