@@ -30,6 +30,7 @@ void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), s
 void write_report_of(const EvaluateArguments& arguments) {
   const std::filesystem::path run = arguments.paths.estimate.parent_path();
   evaluation::ReportOptions options;
+  options.trajectory = arguments.paths.estimate;
   options.truth = arguments.paths.truth;
   options.events = arguments.paths.events;
   options.evaluation = arguments.options;

@@ -35,13 +35,27 @@ SE3 align_claims(std::vector<ScanRecord>& scans) {
   return T_truth_estimate;
 }
 
+/// What is left of `error` without its part in the span of `directions`.
+Eigen::Vector3d outside_of(const std::vector<Eigen::Vector3d>& directions, Eigen::Vector3d error) {
+  std::vector<Eigen::Vector3d> basis;
+  for (Eigen::Vector3d direction : directions) {
+    for (const Eigen::Vector3d& known : basis) direction -= direction.dot(known) * known;
+    if (direction.norm() < 1e-3) continue;
+    basis.push_back(direction.normalized());
+    error -= error.dot(basis.back()) * basis.back();
+  }
+  return error;
+}
+
 void measure_errors(double warm_up_s, std::vector<ScanRecord>& scans) {
   const TimeNs counts_from = scans.front().t + from_seconds(warm_up_s);
   for (ScanRecord& scan : scans) {
     scan.counts = scan.t >= counts_from;
     if (!scan.has_error()) continue;
     const SE3& truth = scan.truth.T_map_body;
-    scan.trans_error_m = (scan.T_map_body.translation - truth.translation).norm();
+    const Eigen::Vector3d error = scan.T_map_body.translation - truth.translation;
+    scan.trans_error_m = error.norm();
+    scan.undeclared_error_m = outside_of(scan.weak_directions, error).norm();
     scan.rot_error_deg =
         so3::angle_between(scan.T_map_body.rotation, truth.rotation) * 180 / std::numbers::pi;
   }
@@ -74,7 +88,7 @@ void measure_shares(const EvaluationOptions& options, const std::vector<ScanReco
     result.trusted.add(trusted);
     if (!scan.truth.known()) continue;
     result.success.add(options.success.holds(scan));
-    result.misleading.add(trusted && !options.misleading.holds(scan));
+    result.misleading.add(is_misleading(scan, options.misleading));
   }
 }
 

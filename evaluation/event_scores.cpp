@@ -67,7 +67,7 @@ void measure_damage(ScanIterator first, ScanIterator last, const PoseTolerance& 
       score.noticed_after_s = to_seconds(scan->t - score.event.t0);
     if (!scan->has_error()) continue;
     score.worst_claim_m = std::fmax(score.worst_claim_m, scan->trans_error_m);
-    if (status_is_trusted(scan->status) && !misleading.holds(*scan)) ++score.misleading_scans;
+    if (is_misleading(*scan, misleading)) ++score.misleading_scans;
   }
 }
 
@@ -86,6 +86,11 @@ EventScore score_event(const Event& event, TimeNs limit, const std::vector<ScanR
 }
 
 }  // namespace
+
+bool is_misleading(const ScanRecord& scan, const PoseTolerance& tolerance) {
+  if (!scan.has_error() || !status_is_trusted(scan.status)) return false;
+  return scan.undeclared_error_m > tolerance.trans_m || scan.rot_error_deg > tolerance.rot_deg;
+}
 
 bool is_simulated_event(const std::string& name) {
   return std::find(kSimulatedEvents.begin(), kSimulatedEvents.end(), name) !=

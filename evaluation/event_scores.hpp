@@ -20,6 +20,10 @@ struct PoseTolerance {
   }
 };
 
+/// Trusted (TRACKING or DEGRADED) and beyond `tolerance` wrong, in DEGRADED only in a direction
+/// that it did not declare uncertain.
+bool is_misleading(const ScanRecord& scan, const PoseTolerance& tolerance);
+
 /// How a run came through one event.
 struct EventScore {
   Event event;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr TimeNs kSameScan = kSecond / 1000;
 constexpr double kNominalPeriod_s = 0.1;
+constexpr double kJitter = 0.05;  ///< of a period
 
 template <class Container, class TimeOf>
 double median_period_s(const Container& items, const TimeOf& time_of) {
@@ -45,6 +46,7 @@ ScanRecord scan_of_row(const StepRow& row) {
   scan.t = row.pose_time;
   scan.status = row.status;
   scan.odom_epoch = row.odom_epoch;
+  if (state_of(row.status) == State::kDegraded) scan.weak_directions = row.weak_directions;
   return scan;
 }
 
@@ -54,6 +56,11 @@ void add_unclaimed(TimeNs begin, TimeNs step, std::int64_t count, std::vector<Sc
     scan.t = begin + i * step;
     scans.push_back(scan);
   }
+}
+
+/// Whole periods in `duration`, which may be `slack` periods shorter than they are.
+std::int64_t whole_periods(TimeNs duration, double period_s, double slack) {
+  return static_cast<std::int64_t>(std::max(to_seconds(duration) / period_s + slack, 0.0));
 }
 
 std::int64_t scans_missing_between(TimeNs a, TimeNs b, double period_s) {
@@ -87,6 +94,7 @@ ScanList scans_from_steps(const Trajectory& estimate, const std::vector<StepRow>
     } else if (trust_every_claim) {
       scan.status.clear();
     }
+    if (trust_every_claim) scan.weak_directions.clear();
     list.scans.push_back(std::move(scan));
   }
   take_claims_before(std::numeric_limits<TimeNs>::max());
@@ -104,10 +112,11 @@ ScanList scans_from_period(const Trajectory& estimate, const TruthTrack& truth) 
   const TimeNs begin = truth.begin_time();
   const TimeNs end = truth.end_time();
   if (claims.empty()) {
-    add_unclaimed(begin, period, (end - begin) / period + 1, list.scans);
+    add_unclaimed(begin + period, period, (end - begin) / period, list.scans);
     return list;
   }
-  const std::int64_t before = std::max<TimeNs>(claims.front().t - begin, 0) / period;
+  // Scans end after the truth's first line and not after its last; jitter is no scan.
+  const std::int64_t before = whole_periods(claims.front().t - begin, list.period_s, -kJitter);
   add_unclaimed(claims.front().t - before * period, period, before, list.scans);
   for (std::size_t i = 0; i < claims.size(); ++i) {
     list.scans.push_back(claimed_scan(claims[i]));
@@ -116,7 +125,7 @@ ScanList scans_from_period(const Trajectory& estimate, const TruthTrack& truth) 
     const std::int64_t missing = scans_missing_between(claims[i].t, claims[i + 1].t, list.period_s);
     add_unclaimed(claims[i].t + pause / (missing + 1), pause / (missing + 1), missing, list.scans);
   }
-  const std::int64_t after = std::max<TimeNs>(end - claims.back().t, 0) / period;
+  const std::int64_t after = whole_periods(end - claims.back().t, list.period_s, kJitter);
   add_unclaimed(claims.back().t + period, period, after, list.scans);
   return list;
 }

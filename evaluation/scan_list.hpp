@@ -19,6 +19,9 @@ struct ScanRecord {
   TruthSample truth;
   double trans_error_m = kNotKnown;  ///< only if claimed and the truth is known
   double rot_error_deg = kNotKnown;
+  /// Translation error outside of the directions that DEGRADED declared uncertain.
+  double undeclared_error_m = kNotKnown;
+  std::vector<Eigen::Vector3d> weak_directions;  ///< declared; unit vectors in the map frame
   std::int64_t odom_epoch = 0;
   std::ptrdiff_t row = -1;  ///< its row in steps.csv; -1: none
   bool counts = false;      ///< after the first seconds that shares leave out

@@ -69,7 +69,7 @@ Result<EventList> read_events(const std::filesystem::path& path) {
     const std::string_view line = text.substr(at, has_end ? end - at : end);
     at = has_end ? end + 1 : text.size();
     if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-    Result<Event> event = parse_line(fmt::format("{}:{}", path.string(), number), line);
+    Result<Event> event = parse_line(fmt::format("{}: line {}", path.string(), number), line);
     if (!event && !has_end) {
       list.truncated = true;
       break;

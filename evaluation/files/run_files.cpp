@@ -2,10 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string_view>
 
 #include "evaluation/files/text_file.hpp"
@@ -73,6 +76,20 @@ bool read_epoch(const std::string& cell, StepRow& row) {
   return true;
 }
 
+/// "(x y z);(x y z)" as unit vectors. Text of another form declares nothing, which is the strict
+/// reading: an error in any direction counts then.
+bool read_directions(const std::string& cell, StepRow& row) {
+  std::istringstream groups(cell);
+  for (std::string group; std::getline(groups, group, ';');) {
+    std::array<double, 3> v{};
+    if (std::sscanf(group.c_str(), "(%lf %lf %lf)", &v[0], &v[1], &v[2]) != 3) continue;
+    const Eigen::Vector3d direction(v[0], v[1], v[2]);
+    if (direction.norm() > 1e-6 && direction.allFinite())
+      row.weak_directions.push_back(direction.normalized());
+  }
+  return true;
+}
+
 /// The reader of a known column; empty for an unknown one.
 CellReader reader_of(const std::string& column, std::vector<std::string>& stages) {
   if (column == "stamp") {
@@ -87,7 +104,7 @@ CellReader reader_of(const std::string& column, std::vector<std::string>& stages
   if (column == "matches") return number_into(&StepRow::matches);
   if (column == "inlier_share") return number_into(&StepRow::inlier_share);
   if (column == "mean_abs_residual") return number_into(&StepRow::mean_abs_residual_m);
-  if (column == "weak_directions") return text_into(&StepRow::weak_directions);
+  if (column == "weak_directions") return read_directions;
   if (column == "sigma_trans") return number_into(&StepRow::sigma_trans_m);
   if (column == "sigma_rot") return number_into(&StepRow::sigma_rot_rad);
   if (column == "odom_epoch") return read_epoch;
@@ -116,7 +133,8 @@ Result<StepsHeader> read_header(const std::string& file, std::string_view line) 
     bool found = false;
     for (const std::string& column : header.columns) found = found || column == needed;
     if (!found)
-      return Error{fmt::format("{}:1: expected a column \"{}\", found \"{}\"", file, needed, line)};
+      return Error{
+          fmt::format("{}: line 1: expected a column \"{}\", found \"{}\"", file, needed, line)};
   }
   return header;
 }
@@ -158,7 +176,7 @@ Result<StepTable> parse_steps(const std::string& file, std::string_view text) {
       continue;
     }
     if (line.empty()) continue;
-    const std::string place = fmt::format("{}:{}", file, number);
+    const std::string place = fmt::format("{}: line {}", file, number);
     Result<StepRow> row = read_row(place, line, header);
     if (!row && !has_end) {
       table.truncated = true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -25,7 +26,8 @@ struct StepRow {
   double matches = kNotKnown;
   double inlier_share = kNotKnown;
   double mean_abs_residual_m = kNotKnown;
-  std::string weak_directions;
+  /// Declared with DEGRADED: unit vectors in the map frame along which the position is uncertain.
+  std::vector<Eigen::Vector3d> weak_directions;
   double sigma_trans_m = kNotKnown;
   double sigma_rot_rad = kNotKnown;
   std::int64_t odom_epoch = 0;
@@ -48,7 +50,8 @@ struct StepTable {
 
 /// Reads steps.csv by its header line: columns in any order, unknown ones ignored, empty values
 /// allowed except in pose_time and status (stamp defaults to pose_time). A last line without an end
-/// is dropped when it cannot be read (the run was killed). Errors name file, line, column, what was
+/// is dropped when it cannot be read (the run was killed). Weak directions are written as
+/// "(x y z);(x y z)"; other text there declares none. Errors name file, line, column, what was
 /// expected and found; pose times that do not grow are an error.
 Result<StepTable> read_steps(const std::filesystem::path& path);
 

@@ -9,7 +9,7 @@ if(CMAKE_SCRIPT_MODE_FILE)
   foreach(file IN LISTS FILES)
     get_filename_component(name "${file}" NAME)
     file(READ "${file}" content)
-    # A report names no address at all, so uPlot's banner is replaced by its licence in the template.
+    # A report names no address at all: uPlot's banner goes, its licence stands in the template.
     string(REGEX REPLACE "^/\\*! https://[^*]*\\*/" "" content "${content}")
     string(APPEND text "  if (name == \"${name}\") return R\"holdfast(${content})holdfast\";\n")
   endforeach()

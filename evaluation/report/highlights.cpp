@@ -226,8 +226,9 @@ std::vector<std::string> warnings(const ReportInput& input) {
   if (input.evaluation)
     all.insert(all.end(), input.evaluation->warnings.begin(), input.evaluation->warnings.end());
   if (!input.summary) return all;
-  all.insert(all.end(), input.summary->warnings.begin(), input.summary->warnings.end());
-  add_counter_warnings(*input.summary, all);
+  const std::vector<std::string>& told = input.summary->warnings;
+  all.insert(all.end(), told.begin(), told.end());
+  if (told.empty()) add_counter_warnings(*input.summary, all);
   return all;
 }
 

@@ -34,7 +34,8 @@ struct FigureGroup {
 /// All figures, for the table at the end of the page.
 std::vector<FigureGroup> figure_groups(const ReportInput& input);
 
-/// Sentences about what was left out, guessed or found wrong in the log.
+/// Sentences about what was left out, guessed or found wrong in the log: the summary's own, or,
+/// where it has none, what its counters say.
 std::vector<std::string> warnings(const ReportInput& input);
 
 }  // namespace holdfast::evaluation

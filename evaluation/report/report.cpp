@@ -49,8 +49,22 @@ std::optional<T> read_optional(const std::filesystem::path& path,
   return std::nullopt;
 }
 
-Status read_steps_and_events(const std::filesystem::path& run, const ReportOptions& options,
-                             ReportInput& input) {
+bool is_named(const std::filesystem::path& path, const char* name) {
+  return path.filename() == name;
+}
+
+Status read_events_into(const std::filesystem::path& path, std::vector<Event>& events) {
+  Result<EventList> list = read_events(path);
+  if (!list) return list.error();
+  events = std::move(list->events);
+  return Done{};
+}
+
+/// Steps and events belong to a run's own files only, as in evaluate_files.
+Status read_steps_and_events(const std::filesystem::path& trajectory, ReportInput& input) {
+  const std::filesystem::path run = trajectory.parent_path();
+  const bool is_odometry = is_named(trajectory, "odometry.tum");
+  if (!is_odometry && !is_named(trajectory, "trajectory.tum")) return Done{};
   if (file_exists(run / "steps.csv")) {
     Result<StepTable> steps = read_steps(run / "steps.csv");
     if (!steps) return steps.error();
@@ -58,17 +72,8 @@ Status read_steps_and_events(const std::filesystem::path& run, const ReportOptio
     if (input.steps.truncated)
       input.warnings.push_back("steps.csv ends in the middle of a line, which was left out");
   }
-  if (file_exists(run / "events.jsonl")) {
-    Result<EventList> events = read_events(run / "events.jsonl");
-    if (!events) return events.error();
-    input.run_events = std::move(events->events);
-  }
-  if (!options.events.empty()) {
-    Result<EventList> events = read_events(options.events);
-    if (!events) return events.error();
-    input.events = std::move(events->events);
-  }
-  return Done{};
+  if (!file_exists(run / "events.jsonl")) return Done{};
+  return read_events_into(run / "events.jsonl", input.run_events);
 }
 
 /// Without a truth the estimate itself gives the span of time in which scans were due.
@@ -98,26 +103,38 @@ Status judge_run(const std::filesystem::path& trajectory, const ReportOptions& o
   return Done{};
 }
 
-Result<ReportInput> gather(const std::filesystem::path& run, const ReportOptions& options) {
+std::string folder_name(const std::filesystem::path& folder) {
+  const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+Result<ReportInput> gather(const std::filesystem::path& run,
+                           const std::filesystem::path& trajectory, const ReportOptions& options) {
   ReportInput input;
-  input.title = options.title;
-  if (input.title.empty())
-    input.title =
-        run.filename().empty() ? run.parent_path().filename().string() : run.filename().string();
-  const Result<std::filesystem::path> trajectory = find_trajectory(run);
-  if (!trajectory) return trajectory.error();
-  if (const Status read = read_steps_and_events(run, options, input); !read) return read.error();
+  input.title = options.title.empty() ? folder_name(run) : options.title;
+  if (const Status read = read_steps_and_events(trajectory, input); !read) return read.error();
+  if (!options.events.empty())
+    if (const Status read = read_events_into(options.events, input.events); !read)
+      return read.error();
   if (options.truth.empty()) {
-    const Result<Trajectory> estimate = read_trajectory(*trajectory);
+    const Result<Trajectory> estimate = read_trajectory(trajectory);
     if (!estimate) return estimate.error();
-    if (const Status listed = list_scans(*trajectory, *estimate, input); !listed)
+    if (const Status listed = list_scans(trajectory, *estimate, input); !listed)
       return listed.error();
-  } else if (const Status judged = judge_run(*trajectory, options, input); !judged) {
+  } else if (const Status judged = judge_run(trajectory, options, input); !judged) {
     return judged.error();
   }
   input.summary = read_optional(run / "summary.json", read_summary, input.warnings);
   input.map = read_optional(run / "map_view.json", read_map_view, input.warnings);
   return input;
+}
+
+/// Of the run's own trajectory "report.html", of another one a name that tells.
+std::string report_name(const std::filesystem::path& run, const std::filesystem::path& trajectory) {
+  const Result<std::filesystem::path> own = find_trajectory(run);
+  std::error_code ignored;
+  if (!own || std::filesystem::equivalent(*own, trajectory, ignored)) return "report.html";
+  return fmt::format("report_{}.html", trajectory.stem().string());
 }
 
 }  // namespace
@@ -143,9 +160,13 @@ std::string report_html(const ReportInput& input) {
 
 Result<std::filesystem::path> write_report(const std::filesystem::path& run,
                                            const ReportOptions& options) {
-  const Result<ReportInput> input = gather(run, options);
+  const Result<std::filesystem::path> trajectory =
+      options.trajectory.empty() ? find_trajectory(run)
+                                 : Result<std::filesystem::path>(options.trajectory);
+  if (!trajectory) return trajectory.error();
+  const Result<ReportInput> input = gather(run, *trajectory, options);
   if (!input) return input.error();
-  const std::filesystem::path path = run / "report.html";
+  const std::filesystem::path path = run / report_name(run, *trajectory);
   if (const Status written = io::write_file_atomically(path, report_html(*input)); !written)
     return written.error();
   return path;

@@ -33,17 +33,19 @@ std::string report_payload(const ReportInput& input);
 std::string report_html(const ReportInput& input);
 
 struct ReportOptions {
-  std::filesystem::path truth;   ///< empty: none
-  std::filesystem::path events;  ///< empty: none
+  std::filesystem::path trajectory;  ///< empty: RUN/trajectory.tum, or without it RUN/odometry.tum
+  std::filesystem::path truth;       ///< empty: none
+  std::filesystem::path events;      ///< empty: none
   EvaluationOptions evaluation;
   std::string title;  ///< empty: the name of the run's folder
 };
 
-/// Reads RUN/trajectory.tum (or, without it, RUN/odometry.tum) and, where present, steps.csv,
-/// events.jsonl, summary.json and map_view.json; writes RUN/report.html, whole or not at all, and
-/// returns its path. Errors: no trajectory, a truth that does not fit (see evaluate), a trajectory,
-/// truth, steps or event file that cannot be read. A damaged summary or map view only costs its
-/// panel and becomes a warning in the report.
+/// Reads the trajectory and, where present, RUN's steps.csv, events.jsonl (both only beside a run's
+/// own trajectory.tum or odometry.tum), summary.json and map_view.json. Writes RUN/report.html,
+/// whole or not at all, and returns its path; of another trajectory than the run's own it is
+/// RUN/report_NAME.html. Errors: no trajectory, a truth that does not fit (see evaluate), a
+/// trajectory, truth, steps or event file that cannot be read. A damaged summary or map view only
+/// costs its panel and becomes a warning in the report.
 Result<std::filesystem::path> write_report(const std::filesystem::path& run,
                                            const ReportOptions& options = {});
 

@@ -43,8 +43,9 @@ constexpr auto kKeys = std::to_array<ResultKey>({
      "share of scans with a claim within 0.3 m and 5 deg; no claim is failure", Unit::kShare,
      [](E e) { return e.success.value(); }},
     {"misleading", "misleading",
-     "share of scans claimed in TRACKING or DEGRADED while over 0.5 m or 5 deg wrong", Unit::kShare,
-     [](E e) { return e.misleading.value(); }},
+     "share of scans claimed in TRACKING, or in DEGRADED in a direction not declared, "
+     "while over 0.5 m or 5 deg wrong",
+     Unit::kShare, [](E e) { return e.misleading.value(); }},
     {"misleading_scans", "misleading scans", "the same as a number", Unit::kCount,
      [](E e) { return number(e.misleading.count); }},
     {"trusted", "trusted", "share of scans claimed in TRACKING or DEGRADED", Unit::kShare,
