@@ -101,9 +101,10 @@ void MapFilter::start(StepReport& report) {
     report.reason = "no returns yet";
     return;
   }
-  const InitialAlignment aligned =
-      align_initially(map_, scan_, state_, setup_.start, map_.info().gravity_map, options(), pool_,
-                      work_);
+  UpdateOptions how = options();
+  how.velocity_from_skew = true;
+  const InitialAlignment aligned = align_initially(map_, scan_, state_, setup_.start,
+                                                   map_.info().gravity_map, how, pool_, work_);
   report.inlier_share = aligned.inlier_share;
   if (!aligned.found || aligned.inlier_share < setup_.filter.min_inlier_share) {
     report.reason = "the scan does not fit the map near the initial pose";

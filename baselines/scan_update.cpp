@@ -39,20 +39,24 @@ void deskew(const SelectedScan& scan, const FilterState& state, const Eigen::Vec
   }
 }
 
-/// Marginalises errors common to all points of a scan out of the equations: a pose offset (the map's
-/// own error) and a velocity offset (of the points' times).
+/// Marginalises a pose offset common to all points of the scan (the map's own error) out of the
+/// equations.
 void soften(const UpdateOptions& options, NormalEquations& e) {
-  Matrix9d S = e.H;
-  const auto add = [&S](int block, double sigma) {
-    S.diagonal().segment<3>(block).array() += 1.0 / (sigma * sigma);
-  };
-  add(kPosition, options.map_sigma_m);
-  add(kRotation, options.map_sigma_rad);
-  add(kVelocity, options.scan_sigma_m_s);
-  const Eigen::LDLT<Matrix9d> solver(S);
-  e.g -= e.H * solver.solve(e.g);
-  e.H -= e.H * solver.solve(e.H);
+  Eigen::Matrix<double, 6, 6> S = e.H.topLeftCorner<6, 6>();
+  S.diagonal().head<3>().array() += 1.0 / (options.map_sigma_m * options.map_sigma_m);
+  S.diagonal().tail<3>().array() += 1.0 / (options.map_sigma_rad * options.map_sigma_rad);
+  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(S);
+  const Eigen::Matrix<double, 9, 6> cross = e.H.leftCols<6>();
+  e.g -= cross * solver.solve(e.g.head<6>());
+  e.H -= cross * solver.solve(cross.transpose());
   e.H = (0.5 * (e.H + e.H.transpose())).eval();
+}
+
+/// Takes the motion during the scan as known.
+void fix_velocity(NormalEquations& e) {
+  e.H.middleRows<3>(kVelocity).setZero();
+  e.H.middleCols<3>(kVelocity).setZero();
+  e.g.segment<3>(kVelocity).setZero();
 }
 
 /// d(x [-] prior)/d(error): the identity but for the rotation.
@@ -126,6 +130,7 @@ class Iteration {
     NormalEquations softened = e;
     // The points still stand where the velocity of the last deskewing put them.
     softened.g += e.H.middleCols<3>(kVelocity) * (state_.v_map - deskewed_.v_map);
+    if (!options_.velocity_from_skew) fix_velocity(softened);
     soften(options_, softened);
     const Vector15d difference = state_.minus(prior_);
     const Matrix15d J = chart_jacobian(difference);

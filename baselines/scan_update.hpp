@@ -26,7 +26,9 @@ struct UpdateOptions {
   int max_iterations = 6;
   double map_sigma_m = 0.001;    ///< error of the map common to a whole scan, position
   double map_sigma_rad = 0.0001; ///< and rotation
-  double scan_sigma_m_s = 0.3;   ///< error of the velocity that the skew of a scan tells
+  /// Let the velocity follow from the skew of the scan too: needed where nothing else tells it (a
+  /// start on the move); otherwise the prediction knows it far better.
+  bool velocity_from_skew = false;
 };
 
 /// What an update found.
@@ -46,8 +48,8 @@ struct UpdateWorkspace {
 
 /// Iterated update of `state` (a prediction at the scan's end) with one scan: Gauss-Newton on the
 /// prior and all point-to-plane residuals. The residuals depend on the velocity too, since it moved
-/// the points during the scan; so a single scan tells the velocity of a robot that starts on the
-/// move. The map's own error is common to all points of a scan: a pose offset with `map_sigma` is
+/// the points during the scan; so a single scan can tell the velocity of a robot that starts on the
+/// move (UpdateOptions::velocity_from_skew). The map's own error is common to all points of a scan: a pose offset with `map_sigma` is
 /// marginalised out, which caps the information however many points there are.
 UpdateResult update_with_scan(const map::PriorMap& map, const SelectedScan& scan,
                               const Eigen::Vector3d& gravity, const UpdateOptions& options,

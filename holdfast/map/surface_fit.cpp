@@ -77,7 +77,7 @@ std::optional<Plane> robust_plane(const Offsets& points, const FitOptions& optio
 /// A plane is believed where its thickness is explained by the map's noise and is small against its
 /// extent.
 bool is_flat(const Plane& plane, const FitOptions& options) {
-  return plane.sigma_m < 2.0 * options.noise_m && plane.spread_m > 4.0 * plane.sigma_m;
+  return plane.sigma_m < 2.0 * options.noise_m && plane.spread_m > 5.0 * plane.sigma_m;
 }
 
 Offsets within(const Offsets& points, double radius) {

@@ -1,6 +1,7 @@
 #include "holdfast/registration/correspondences.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace holdfast::registration {
@@ -8,30 +9,12 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;
 
-/// The nearest plane among those of one cell.
+/// The plane that a point is paired with.
 struct Choice {
   const map::Surface* surface = nullptr;
   Eigen::Vector3f corner = Eigen::Vector3f::Zero();
-  float distance = 0;  ///< signed, m
+  float information = 0;  ///< 1 / variance of the point's distance to the plane
 };
-
-Choice nearest_plane(const map::PriorMap& map, int level, const Eigen::Vector3f& p, float gate) {
-  Choice best;
-  const map::PriorMap::Hit hit = map.find(level, p);
-  if (hit.surface == nullptr) return best;
-  const Eigen::Vector3f in_tile = p - hit.corner;
-  float least = gate;
-  for (const map::Surface* s = hit.surface;; ++s) {
-    if (s->kind == map::SurfaceKind::kPlane) {
-      const float distance = s->normal.dot(in_tile - s->center);
-      if (std::abs(distance) < least) {
-        least = std::abs(distance);
-        best = {s, hit.corner, distance};
-      }
-    }
-    if (s->more == 0) return best;
-  }
-}
 
 /// What associating a range of points needs, in float.
 struct Query {
@@ -42,18 +25,49 @@ struct Query {
   Eigen::Vector3f p_lidar;  ///< relative to the anchor
 
   Choice choose(const Eigen::Vector3f& p) const {
-    Choice choice = nearest_plane(map, options.level, p, options.gate_m);
-    if (choice.surface == nullptr && options.coarser_if_none &&
-        options.level + 1 < map::kLevels) {
-      choice = nearest_plane(map, options.level + 1, p, options.gate_m);
+    const map::PriorMap::Hit hit = map.find(options.level, p);
+    if (hit.surface != nullptr) return choose_in_cell(p, hit);
+    if (!options.coarser_if_none || options.level + 1 >= map::kLevels) return {};
+    const map::PriorMap::Hit coarse = map.find(options.level + 1, p);
+    return coarse.surface == nullptr ? Choice{} : choose_in_cell(p, coarse);
+  }
+
+  /// The nearest plane of a cell, unless the point may as well belong to the next one: a wrong plane
+  /// at an edge is worse than none.
+  Choice choose_in_cell(const Eigen::Vector3f& p, const map::PriorMap::Hit& hit) const {
+    constexpr float kAmbiguousSigmas = 3.0F;
+    const Eigen::Vector3f in_tile = p - hit.corner;
+    Choice best;
+    float least = options.gate_m;
+    float next_sigmas = std::numeric_limits<float>::infinity();
+    for (const map::Surface* s = hit.surface;; ++s) {
+      if (s->kind == map::SurfaceKind::kPlane) {
+        const float distance = std::abs(s->normal.dot(in_tile - s->center));
+        const float information = information_of(p, *s);
+        const float sigmas = distance * std::sqrt(information);
+        if (distance < least) {
+          if (best.surface != nullptr) next_sigmas = std::min(next_sigmas, best_sigmas(best, p));
+          least = distance;
+          best = {s, hit.corner, information};
+        } else {
+          next_sigmas = std::min(next_sigmas, sigmas);
+        }
+      }
+      if (s->more == 0) break;
     }
-    return choice;
+    return next_sigmas < kAmbiguousSigmas ? Choice{} : best;
+  }
+
+  float best_sigmas(const Choice& c, const Eigen::Vector3f& p) const {
+    const float distance = c.surface->normal.dot(p - c.corner - c.surface->center);
+    return std::abs(distance) * std::sqrt(c.information);
   }
 
   /// 1 / variance of the distance of `p` to the plane.
-  float information(const Eigen::Vector3f& p, const map::Surface& s) const {
+  float information_of(const Eigen::Vector3f& p, const map::Surface& s) const {
     const Eigen::Vector3f ray = p - p_lidar;
-    const float cosine_sq = std::pow(s.normal.dot(ray), 2.0F) / ray.squaredNorm();
+    const float along = s.normal.dot(ray);
+    const float cosine_sq = along * along / ray.squaredNorm();
     return 1.0F / (options.range_sigma_m * options.range_sigma_m * cosine_sq +
                    s.sigma_m * s.sigma_m + options.surface_sigma_m * options.surface_sigma_m);
   }
@@ -79,7 +93,7 @@ std::size_t associate_range(const Query& query, const BodyPoints& points, std::s
     out.ny[i] = n.y();
     out.nz[i] = n.z();
     out.offset[i] = n.dot(choice.surface->center + choice.corner);
-    out.information[i] = query.information(p, *choice.surface);
+    out.information[i] = choice.information;
     ++matches;
   }
   return matches;
