@@ -88,15 +88,16 @@ Offsets within(const Offsets& points, double radius) {
   return near;
 }
 
-/// The cell's own points and those of its neighbourhood, relative to the centroid of the own ones.
+/// The points of a cell and of its neighbourhood, relative to the centroid of the cell's.
 struct Neighbourhood {
   Eigen::Vector3d center;
-  Offsets own;
+  Offsets own;  ///< in the cell or just outside: what a noisy point in the cell may belong to
   Offsets all;  ///< within the wide radius, thinned out where they are dense
   double density = 1.0;  ///< points there are for each one in `all`
 };
 
-constexpr std::size_t kPointsPerCell = 24;
+constexpr std::size_t kPointsPerCell = 24;  // more in one cell tell nothing new
+constexpr double kOwnMargin = 0.2;         // around a cell, as a share of its side
 
 Neighbourhood gather(const PointGrid& grid, const Cell& cell, const FitOptions& options) {
   Neighbourhood n;
@@ -104,7 +105,8 @@ Neighbourhood gather(const PointGrid& grid, const Cell& cell, const FitOptions& 
   n.center.setZero();
   for (const auto& p : own) n.center += p.cast<double>();
   n.center /= static_cast<double>(own.size());
-  for (const auto& p : own) n.own.push_back(p.cast<double>() - n.center);
+  const Eigen::Vector3d middle = (cell.cast<double>().array() + 0.5) * grid.cell_m();
+  const double own_reach = (0.5 + kOwnMargin) * grid.cell_m();
   const double radius = options.wide_radius * grid.cell_m();
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
   const Cell low = grid.cell_of((n.center - reach).cast<float>());
@@ -114,12 +116,13 @@ Neighbourhood gather(const PointGrid& grid, const Cell& cell, const FitOptions& 
     for (int y = low.y(); y <= high.y(); ++y) {
       for (int x = low.x(); x <= high.x(); ++x) {
         const auto points = grid.points({x, y, z});
-        // More points than this in one cell tell nothing new.
         const std::size_t step = points.size() / kPointsPerCell + 1;
         for (std::size_t i = 0; i < points.size(); i += step) {
-          const Eigen::Vector3d d = points.first[i].cast<double>() - n.center;
+          const Eigen::Vector3d p = points.first[i].cast<double>();
+          const Eigen::Vector3d d = p - n.center;
           if (d.squaredNorm() >= radius * radius) continue;
           n.all.push_back(d);
+          if (((p - middle).array().abs() < own_reach).all()) n.own.push_back(d);
           there += static_cast<double>(step);
         }
       }
@@ -158,10 +161,11 @@ std::optional<Plane> single_plane(const Neighbourhood& n, double cell_m,
   return std::nullopt;
 }
 
-/// Does the plane explain at least half of the cell's own points?
+/// Does the plane explain the cell's own points, but for stray ones?
 bool explains(const Plane& plane, const Offsets& own, const FitOptions& options) {
+  constexpr double kShare = 0.85;
   const Moments m = near_plane(own, plane, 3.0 * options.noise_m);
-  return 2 * m.count >= static_cast<int>(own.size());
+  return m.count >= kShare * static_cast<double>(own.size());
 }
 
 /// At most `most` of the points, evenly.
