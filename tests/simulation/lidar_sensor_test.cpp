@@ -71,7 +71,7 @@ TEST(LidarSensor, AtRestMeasuresTheRoomInClosedForm) {
 
 // A ray that is cast from a pose 3 us too old is off by more than the tolerance in this drive.
 TEST(LidarSensor, MovingCastsEachRayAtItsOwnTime) {
-  SimulationOptions options = noise_free("box", 12);
+  SimulationOptions options = noise_free("box", 8);
   options.seed = 4;
   const auto simulation = make(options);
   auto log = record(*simulation);
@@ -80,7 +80,7 @@ TEST(LidarSensor, MovingCastsEachRayAtItsOwnTime) {
     fastest_turn = std::max(fastest_turn, simulation->state_at(scan.stamp).omega_body.norm());
   }
   ASSERT_GT(fastest_turn, 0.5);
-  log.scans.erase(log.scans.begin(), log.scans.begin() + 40);
+  log.scans.erase(log.scans.begin(), log.scans.begin() + 50);
   expect_on_walls(*simulation, log.scans);
 }
 
@@ -182,12 +182,12 @@ TEST(LidarSensor, SurfacesReturnAsOftenAsTheirMaterialSays) {
 
 /// A point is explained by the static world or stands in front of it, where a person was.
 TEST(LidarSensor, SeesPeopleWhereTheyAreAtTheTimeOfTheRay) {
-  SimulationOptions options = noise_free("office", 20);
+  SimulationOptions options = noise_free("office", 6);
   options.lidar.keep_all_returns = true;
   const auto with = make(options);
   Scenario empty = *make_scenario("office");
   const auto plans = empty.walkers;
-  const Drive robot = Drive::plan(empty.route, empty.style, options.seed, 20 * kSecond, {});
+  const Drive robot = Drive::plan(empty.route, empty.style, options.seed, 6 * kSecond, {});
   const Walkers people(plans, robot, options.seed);
   empty.walkers.clear();
   const auto without = std::move(*Simulation::create(std::move(empty), options));
@@ -195,7 +195,7 @@ TEST(LidarSensor, SeesPeopleWhereTheyAreAtTheTimeOfTheRay) {
   const auto bare = record(*without);
   std::size_t on_people = 0;
   std::vector<Capsule> shapes;
-  for (std::size_t s = 0; s < seen.scans.size(); s += 10) {
+  for (std::size_t s = 0; s < seen.scans.size(); s += 3) {
     ASSERT_EQ(seen.scans[s].points.size(), bare.scans[s].points.size());
     for (std::size_t i = 0; i < seen.scans[s].points.size(); ++i) {
       const ScanPoint& point = seen.scans[s].points[i];

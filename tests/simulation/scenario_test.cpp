@@ -95,7 +95,7 @@ TEST(Scenario, PeopleWalkAtTheirPaceAndKeepAway) {
   }
 }
 
-/// Mean, least and most returns of a scan over a drive of 40 s.
+/// Mean, least and most returns of a revolution over a drive of 40 s, one revolution a second.
 struct Returns {
   double mean = 0;
   std::size_t least = 1'000'000;
@@ -107,6 +107,7 @@ Returns returns_in(const char* scenario, std::uint64_t seed) {
   options.scenario = scenario;
   options.seed = seed;
   options.duration_s = 40;
+  options.lidar.period = kSecond;
   options.threads = 2;
   Returns out;
   const auto log = record(*make(options));
