@@ -98,6 +98,16 @@ function wrongChart(scans) {
   };
 }
 
+const totals = (lines) => lines[0].values.map((_, i) =>
+  lines.reduce((sum, line) => sum + (line.values[i] || 0), 0));
+
+// A few values far above all others would flatten the rest: the axis then ends below them.
+function cutOff(values) {
+  const usual = percentile(values, 0.99);
+  const worst = percentile(values, 1);
+  return worst > 4 * usual ? { high: 1.8 * usual, worst } : undefined;
+}
+
 function stepChart(scans) {
   const names = Object.keys(scans.stages);
   const lines = names.map((name, i) => ({ label: name.replaceAll("_", " "),
@@ -106,8 +116,10 @@ function stepChart(scans) {
   const stacked = lines.length > 0;
   if (!stacked) lines.push({ label: "total", values: scans.ms_total, text: msText, colour: kBlue,
     fill: true });
+  const cut = cutOff(totals(lines));
   return { title: "Time of a step", lines: lines.reverse(), stacked,
-    axes: { y: plainAxis(" ms") } };
+    axes: { y: { ...plainAxis(" ms"), high: cut && cut.high } },
+    note: cut && `worst ${msText(cut.worst)}` };
 }
 
 function statusChart(scans) {

@@ -206,6 +206,8 @@ class Chart {
   showKeys(index) {
     this.keys.replaceChildren();
     if (this.options.band) return this.showStatusKeys(index);
+    if (index === null && this.options.note)
+      this.keys.append(element("span", "note", this.options.note));
     const crowded = this.options.lines.length > 3;  // no room for labels and values at once
     for (const line of this.options.lines) {
       const key = element("span", "key");

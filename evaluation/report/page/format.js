@@ -19,7 +19,8 @@ const shareText = (share) => (isKnown(share) ? (100 * share).toFixed(1) + " %" :
 const countText = (count) =>
   isKnown(count) ? Math.round(count).toString().replace(/\B(?=(\d{3})+$)/g, " ") : "–";
 const msText = (ms) => (isKnown(ms) ? threeDigits(ms) + " ms" : "–");
-const timeText = (seconds) => (isKnown(seconds) ? seconds.toFixed(2) + " s" : "–");
+const timeText = (seconds) =>
+  (isKnown(seconds) ? (Math.abs(seconds) < 0.005 ? 0 : seconds).toFixed(2) + " s" : "–");
 
 // A length axis in mm when all of it is small.
 function lengthUnit(values) {

@@ -34,18 +34,18 @@ class MapPanel {
 
   resize() {
     const ratio = window.devicePixelRatio || 1;
-    const { clientWidth, clientHeight } = this.root;
-    for (const canvas of [this.base, this.overlay]) {
-      canvas.width = Math.max(1, Math.round(clientWidth * ratio));
-      canvas.height = Math.max(1, Math.round(clientHeight * ratio));
-    }
+    const width = Math.max(1, Math.round(this.root.clientWidth * ratio));
+    const height = Math.max(1, Math.round(this.root.clientHeight * ratio));
+    if (width === this.base.width && height === this.base.height) return;
+    for (const canvas of [this.base, this.overlay]) Object.assign(canvas, { width, height });
     this.ratio = ratio;
     if (!this.moved) this.fit();
-    this.draw();
+    this.drawNow();  // setting the size has cleared the canvas
   }
 
-  // Everything that was driven, and the map around it without its stray points.
-  fit() {
+  // Everything that was driven, and the map around it without its stray points: [low, high] of x
+  // and of y.
+  extent() {
     const own = this.drawn.filter((_, k) => k % 5 === 0);
     const truth = this.data.truth || { x: [], y: [] };
     const span = (axis) => {
@@ -56,7 +56,17 @@ class MapPanel {
       if (low.length === 0) return [0, 1];
       return [low.reduce((a, b) => Math.min(a, b)), high.reduce((a, b) => Math.max(a, b))];
     };
-    const [x, y] = [span("x"), span("y")];
+    return [span("x"), span("y")];
+  }
+
+  // Width by height of what there is to see.
+  aspect() {
+    const [x, y] = this.extent();
+    return (x[1] - x[0]) / Math.max(y[1] - y[0], 1e-3);
+  }
+
+  fit() {
+    const [x, y] = this.extent();
     const border = 34 * this.ratio;
     const foot = 26 * this.ratio;
     const { width, height } = this.base;
@@ -178,12 +188,15 @@ class MapPanel {
 
   draw() {
     if (this.waiting) return;
-    this.waiting = requestAnimationFrame(() => {
-      this.waiting = null;
-      this.drawBase();
-      this.drawOverlay();
-      this.drawScaleBar();
-    });
+    this.waiting = requestAnimationFrame(() => this.drawNow());
+  }
+
+  drawNow() {
+    if (this.waiting) cancelAnimationFrame(this.waiting);
+    this.waiting = null;
+    this.drawBase();
+    this.drawOverlay();
+    this.drawScaleBar();
   }
 
   showFocus(index) {

@@ -163,7 +163,8 @@ const mapDrawing = {
     const side = this.u(this.scans.x[second]) > u0 ? -1 : 1;
     const near = Math.hypot(u1 - u0, v1 - v0) < 60 * this.ratio;
     this.label(context, "start", u0, v0, side);
-    this.label(context, "end", u1, v1, near ? -side : 1);
+    const ahead = Math.cos((this.scans.yaw[last] * Math.PI) / 180) < -0.3 ? -1 : 1;
+    this.label(context, "end", u1, v1, near ? -side : ahead);
   },
 
   drawStart(context, u, v) {
