@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "evaluation/alignment.hpp"
@@ -29,7 +30,7 @@ SE3 align_claims(std::vector<ScanRecord>& scans) {
     truths.push_back(scan.truth.T_map_body);
   }
   if (claims.empty()) return {};
-  const SE3 T_truth_estimate = align_rigid(claims, truths);
+  SE3 T_truth_estimate = align_rigid(claims, truths);
   for (ScanRecord& scan : scans)
     if (scan.claimed) scan.T_map_body = T_truth_estimate * scan.T_map_body;
   return T_truth_estimate;
@@ -115,25 +116,25 @@ void score_what_happened(const EvaluationOptions& options, const RunContext& con
   }
 }
 
-void warn(std::size_t number, const std::string& sentence, Evaluation& result) {
-  if (number > 0) result.warnings.push_back(fmt::format("{} {}", number, sentence));
+void warn(std::size_t number, std::string_view what, Evaluation& result) {
+  if (number > 0) result.warnings.push_back(fmt::format("{}: {}", what, number));
 }
 
 void collect_warnings(const ScanList& list, const RunContext& context, Evaluation& result) {
   if (!context.steps.empty() && !list.from_steps)
     result.warnings.push_back("steps.csv has no time in common with the estimate and was not used");
-  warn(result.outside_truth, "claims lie outside the time of the truth and are not judged", result);
-  warn(result.in_truth_gap, "claims lie in gaps of the truth and are not judged", result);
-  warn(list.claims_without_row, "claims have no row in steps.csv and count as TRACKING", result);
-  warn(list.repeated_claims, "claims repeat the stamp of the one before and are left out", result);
+  warn(result.outside_truth, "claims outside the time of the truth, not judged", result);
+  warn(result.in_truth_gap, "claims in gaps of the truth, not judged", result);
+  warn(list.claims_without_row, "claims without a row in steps.csv, taken for TRACKING", result);
+  warn(list.repeated_claims, "claims that repeat the stamp of the one before, left out", result);
   std::size_t untold = 0;
   for (const ScanRecord& scan : list.scans)
     if (scan.claimed && !status_claims_pose(scan.status)) ++untold;
-  warn(untold, "claims were made in a status that makes none", result);
+  warn(untold, "claims in a status that makes none", result);
   std::size_t unscored = 0;
   for (const Event& event : context.events)
     if (!is_simulated_event(event.name)) ++unscored;
-  warn(unscored, "events are of a kind that is not scored", result);
+  warn(unscored, "events of a kind that is not scored", result);
 }
 
 }  // namespace

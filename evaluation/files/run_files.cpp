@@ -208,7 +208,7 @@ void flatten_numbers(const std::string& prefix, const Json& object,
                      std::vector<std::pair<std::string, double>>& out) {
   if (!object.is_object()) return;
   for (const auto& [key, value] : object.items()) {
-    const std::string name = prefix.empty() ? key : prefix + "." + key;
+    const std::string name = prefix.empty() ? key : fmt::format("{}.{}", prefix, key);
     if (value.is_object())
       flatten_numbers(name, value, out);
     else if (value.is_number())

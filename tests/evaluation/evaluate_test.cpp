@@ -173,7 +173,8 @@ TEST(Evaluate, RepeatedStampsCountOnce) {
   EXPECT_EQ(e.claimed, 100U);
   EXPECT_NEAR(e.trans_m.max, 0, kPositionRounding);
   ASSERT_EQ(e.warnings.size(), 1U);
-  EXPECT_THAT(e.warnings[0], HasSubstr("1 claims repeat the stamp"));
+  EXPECT_THAT(e.warnings[0],
+              HasSubstr("claims that repeat the stamp of the one before, left out: 1"));
 }
 
 TEST(Evaluate, StepsOfAnotherRunAreNotUsedAndSaidSo) {
