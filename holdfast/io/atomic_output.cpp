@@ -36,7 +36,7 @@ fs::path without_trailing_separator(const fs::path& path) {
 Status write_file_atomically(const fs::path& path, std::string_view content) {
   auto file = files::StagedFile::create(path);
   if (!file) return file.error();
-  const auto written = file->write(content);
+  auto written = file->write(content);
   if (!written) return written;
   return file->commit();
 }
@@ -73,7 +73,7 @@ Status AtomicFolder::commit() {
   if (!fs::exists(staging_ / marker_, error)) {
     return error_at(path_, "is not complete: {} was not written", marker_);
   }
-  const auto replaceable = check_replaceable(path_, marker_);
+  auto replaceable = check_replaceable(path_, marker_);
   if (!replaceable) return replaceable;
   // rename() does not replace a folder with content: the old one steps aside first.
   unsigned attempt = 0;

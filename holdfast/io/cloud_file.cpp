@@ -79,11 +79,11 @@ Status write_cloud(const std::filesystem::path& path, const PointCloud& cloud) {
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     append_point(cloud, i, far, block);
     if (block.size() < kBlockBytes) continue;
-    const auto status = file->write(block);
+    auto status = file->write(block);
     if (!status) return status;
     block.clear();
   }
-  const auto status = file->write(block);
+  auto status = file->write(block);
   return status ? file->commit() : status;
 }
 

@@ -7,6 +7,7 @@
 #include "holdfast/io/cloud_file.hpp"
 #include "holdfast/io/tum_file.hpp"
 #include "tests/io/clouds/cloud_bytes.hpp"
+#include "tests/io/logs/log_content.hpp"
 #include "tests/io/logs/message_builder.hpp"
 #include "tests/io/temporary_folder.hpp"
 

@@ -5,7 +5,7 @@
 #include "holdfast/io/cloud_file.hpp"
 #include "holdfast/io/kitti_raw.hpp"
 #include "holdfast/io/tum_file.hpp"
-#include "tests/io/logs/message_builder.hpp"
+#include "tests/io/logs/log_content.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace holdfast::io::testing {

@@ -32,8 +32,9 @@ class TemporaryFolder {
 
   /// Writes a file and returns its path.
   std::filesystem::path put(std::string_view name, std::string_view content) const {
-    const auto file = path_ / name;
+    auto file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
+    std::filesystem::remove(file);  // ext4 waits for the disk when a file with content is rewritten
     std::ofstream(file, std::ios::binary) << content;
     return file;
   }

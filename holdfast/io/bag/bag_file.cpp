@@ -35,8 +35,9 @@ Result<BagFile> BagFile::open(const std::filesystem::path& path) {
   bool indexed = false;
   if (header && header->fields().op() == Op::kFileHeader) {
     const auto fields = header->fields();
-    if (fields.find("encryptor").value_or("") != "") {
-      return error_at(path, "is encrypted (by {}) and cannot be read", *fields.find("encryptor"));
+    const auto encryptor = fields.find("encryptor").value_or("");
+    if (!encryptor.empty()) {
+      return error_at(path, "is encrypted (by {}) and cannot be read", encryptor);
     }
     const auto index = fields.number<std::uint64_t>("index_pos");
     const auto connections = fields.number<std::uint32_t>("conn_count");

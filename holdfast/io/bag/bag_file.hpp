@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -34,7 +35,9 @@ struct MessagePlace {
   std::uint32_t offset = 0;      ///< of its record in the unpacked chunk
   std::uint32_t connection = 0;  ///< index into connections()
 
-  auto operator<=>(const MessagePlace&) const = default;
+  friend bool operator<(const MessagePlace& a, const MessagePlace& b) {
+    return std::tie(a.time, a.chunk, a.offset) < std::tie(b.time, b.chunk, b.offset);
+  }
 };
 
 /// A ROS 1 bag of format 2.0, read through its index; where that is missing or damaged (a recording

@@ -9,7 +9,7 @@
 namespace holdfast::io::bag {
 namespace {
 
-constexpr std::size_t kChunkBytes = 768 * 1024;
+constexpr std::size_t kChunkBytes = 768UL * 1024;
 // The file header is padded, so that it can be rewritten when the index stands.
 constexpr std::size_t kFileHeaderBytes = 4096;
 
@@ -119,7 +119,7 @@ Status BagRecorder::flush_chunk() {
 }
 
 Status BagRecorder::close() {
-  const auto flushed = flush_chunk();
+  auto flushed = flush_chunk();
   if (!flushed) return flushed;
   const std::uint64_t index_position = file_.size();
   std::string out;
@@ -142,7 +142,7 @@ Status BagRecorder::close() {
     append_number_field(header, "ver", std::uint32_t{1});
     out += record(header, data);
   }
-  const auto indexed = file_.write(out);
+  auto indexed = file_.write(out);
   if (!indexed) return indexed;
   const auto finished = file_.rewrite(kMagic.size(), file_header(index_position));
   return finished ? file_.commit() : finished;

@@ -57,13 +57,13 @@ class BagLog : public LogReader {
 };
 
 Status BagLog::prepare() {
-  const auto slice = check_slice(options_);
+  auto slice = check_slice(options_);
   if (!slice) return slice;
   counters_.truncated = bag_.truncated();
   if (bag_.truncated() && bag_.connections().empty()) {
     return error_at(bag_.path(), "ends early: it has no index and no readable message");
   }
-  const auto listed = list_messages();
+  auto listed = list_messages();
   if (!listed) return listed;
   return survey_clouds();
 }
@@ -132,7 +132,7 @@ bool BagLog::is_lone_leap(TimeNs stamp, TimeNs last, bool of_scans) {
 
 std::optional<ImuSample> BagLog::read_imu(const bag::MessagePlace& place) {
   const auto bytes = bag_.read(place);
-  const auto sample = bytes ? ros::parse_imu(*bytes) : std::nullopt;
+  auto sample = bytes ? ros::parse_imu(*bytes) : std::nullopt;
   if (!sample) {
     ++counters_.bad_messages;
     return std::nullopt;

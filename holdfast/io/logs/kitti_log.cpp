@@ -90,9 +90,9 @@ class KittiLog : public LogReader {
 };
 
 Status KittiLog::prepare(const fs::path& drive) {
-  const auto slice = check_slice(options_);
+  auto slice = check_slice(options_);
   if (!slice) return slice;
-  const auto scans = list_scans(drive / "velodyne_points");
+  auto scans = list_scans(drive / "velodyne_points");
   if (!scans) return scans;
   std::error_code error;
   if (!options_.need_imu && !fs::exists(drive / "oxts", error)) return Done{};

@@ -67,8 +67,10 @@ struct PutIntensity {
 struct PutRing {
   template <class T>
   static bool put(const char* from, const Context&, ScanPoint& to) {
-    // find_layout() lets integers through only.
-    if constexpr (std::is_integral_v<T>) to.ring = static_cast<std::uint16_t>(files::load<T>(from));
+    // find_layout() lets integers through only; a ring is never negative.
+    if constexpr (std::is_integral_v<T>) {
+      to.ring = static_cast<std::uint16_t>(files::load<std::make_unsigned_t<T>>(from));
+    }
     return true;
   }
 };
@@ -137,7 +139,8 @@ TimeOrigin make_origin(const CloudMessage& message, const CloudLayout& layout,
   if (rule.reference == TimeReference::kEpoch) {
     const auto unit = static_cast<std::int64_t>(rule.ns_per_unit);
     // The double nearest to a large number of ns is a whole number too.
-    origin.base = static_cast<double>(message.stamp / unit);
+    const std::int64_t whole = message.stamp / unit;
+    origin.base = static_cast<double>(whole);
     origin.base_integer = static_cast<std::int64_t>(origin.base);
     origin.rest = static_cast<double>(message.stamp - origin.base_integer * unit);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/io/logs/log_content.hpp"
 #include "tests/io/logs/message_builder.hpp"
 #include "tests/io/temporary_folder.hpp"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "holdfast/core/random.hpp"
+#include "tests/io/logs/log_content.hpp"
 #include "tests/io/logs/message_builder.hpp"
 #include "tests/io/temporary_folder.hpp"
 

@@ -4,6 +4,7 @@
 
 #include "holdfast/io/bag/bag_chunk.hpp"
 #include "holdfast/io/bag_writer.hpp"
+#include "tests/io/logs/log_content.hpp"
 #include "tests/io/logs/message_builder.hpp"
 #include "tests/io/temporary_folder.hpp"
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "holdfast/io/logs/kitti_files.hpp"
+#include "tests/io/logs/log_content.hpp"
 #include "tests/io/logs/message_builder.hpp"
 #include "tests/io/temporary_folder.hpp"
 

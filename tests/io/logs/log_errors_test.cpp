@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/io/logs/log_content.hpp"
 #include "tests/io/logs/message_builder.hpp"
 #include "tests/io/temporary_folder.hpp"
 
