@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   add_map_command(app);
   add_localize_command(app);
   add_evaluate_command(app);
+  add_bench_command(app);
   add_config_command(app);
   try {
     app.parse(argc, argv);

@@ -1,8 +1,12 @@
-# holdfast_module(NAME PATH folder [DEPENDS module...] [LINK target...] [PRIVATE_LINK target...])
+# holdfast_module(NAME PATH folder [EXCLUDE sub-folder] [DEPENDS module...] [LINK target...]
+#                 [PRIVATE_LINK target...])
 # Every .cpp of the folder and its sub-folders becomes part of the static library holdfast_NAME.
 function(holdfast_module name)
-  cmake_parse_arguments(ARG "" "PATH" "DEPENDS;LINK;PRIVATE_LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "PATH;EXCLUDE" "DEPENDS;LINK;PRIVATE_LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${ARG_PATH}/*.cpp)
+  if(ARG_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX "/${ARG_PATH}/${ARG_EXCLUDE}/")
+  endif()
   list(TRANSFORM ARG_DEPENDS PREPEND holdfast_)
   if(sources)
     add_library(holdfast_${name} STATIC ${sources})

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "benchmarks/bench.hpp"
+
+/// The benches, one file each. A new one is declared here and listed in benchmarks/bench.cpp.
+namespace holdfast::benchmarks {
+
+/// Step time of map_filter in the corridor, the office and the hall (16 x 1800 LiDAR), beside two
+/// yardsticks on the same scans in the same run: a k-d-tree registration with fits at query time from
+/// the same predicted poses, and plain reading of the log. All three on one thread, as thread CPU
+/// time; `threads` serves the simulation only.
+Result<BenchReport> measure_step(const BenchOptions& options);
+
+/// Errors of the localizer over worlds and seeds; each drive in its own survey of its world. `threads`
+/// drives run at a time, each on one thread.
+Result<BenchReport> measure_accuracy(const BenchOptions& options);
+
+/// Making a map of 2 million points and localizing in it, each in a process of its own, so that the
+/// peak memory is its own. `threads` fit the surfaces.
+Result<BenchReport> measure_import(const BenchOptions& options);
+
+/// Speed of the simulator for a 16 x 1800 LiDAR.
+Result<BenchReport> measure_simulator(const BenchOptions& options);
+
+}  // namespace holdfast::benchmarks

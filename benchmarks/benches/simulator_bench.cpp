@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <ctime>
+
+#include "benchmarks/benches/all.hpp"
+#include "benchmarks/drives/surveyed_drive.hpp"
+#include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/scratch_folder.hpp"
+#include "benchmarks/harness/table.hpp"
+#include "evaluation/result/number_text.hpp"
+#include "holdfast/core/stage_clock.hpp"
+
+namespace holdfast::benchmarks {
+namespace {
+
+constexpr std::array kScenarios = {"corridor", "office", "hall", "warehouse", "yard"};
+
+double process_cpu_s() {
+  timespec t{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// A simulated second cost that much.
+struct Speed {
+  double simulated_s = 0, wall_s = 0, cpu_s = 0;
+
+  double realtime_factor() const { return simulated_s / wall_s; }
+  /// What one core that does nothing else would reach.
+  double cpu_factor() const { return simulated_s / cpu_s; }
+};
+
+Status drain(simulation::Simulation& drive) {
+  while (true) {
+    const auto event = drive.next();
+    if (!event) return event.error();
+    if (!event->has_value()) return Done{};
+  }
+}
+
+/// Building the world counts for nothing: it is done once, however long the drive.
+template <class Work>
+Status measure(const DriveSpec& spec, const Work& work, Speed& speed) {
+  auto drive = make_drive(spec);
+  if (!drive) return drive.error();
+  const double wall = wall_ms();
+  const double cpu = process_cpu_s();
+  if (Status done = work(**drive); !done) return done;
+  speed.wall_s += 1e-3 * (wall_ms() - wall);
+  speed.cpu_s += process_cpu_s() - cpu;
+  speed.simulated_s += to_seconds((*drive)->end_time() - (*drive)->start_time());
+  return Done{};
+}
+
+struct Speeds {
+  Speed one_thread, threads, bag;
+};
+
+Status add_drive(DriveSpec spec, Speeds& speeds) {
+  auto scratch = ScratchFolder::create();
+  if (!scratch) return scratch.error();
+  if (auto done = measure(spec, drain, speeds.threads); !done) return done;
+  const auto record = [&](simulation::Simulation& drive) {
+    return record_bag(drive, *scratch / "run.bag");
+  };
+  if (auto done = measure(spec, record, speeds.bag); !done) return done;
+  spec.threads = 1;
+  return measure(spec, drain, speeds.one_thread);
+}
+
+nlohmann::ordered_json json_of(const Speed& speed) {
+  return {{"realtime_factor", known(speed.realtime_factor())},
+          {"wall_s", known(speed.wall_s)},
+          {"cpu_s", known(speed.cpu_s)},
+          {"simulated_s", known(speed.simulated_s)},
+          {"cpu_factor", known(speed.cpu_factor())}};
+}
+
+}  // namespace
+
+Result<BenchReport> measure_simulator(const BenchOptions& options) {
+  BenchReport report;
+  const std::string threads = fmt::format("{} threads", options.threads);
+  Table table({"scenario", "in process, " + threads, "to a bag, " + threads,
+               "in process, 1 thread", "by CPU time, 1 thread"});
+  double done = 0;
+  for (const char* scenario : kScenarios) {
+    Speeds speeds;
+    for (auto seed = options.seeds.first; seed <= options.seeds.last; ++seed) {
+      const DriveSpec spec{scenario, seed, options.duration_s, options.threads};
+      options.progress(done++ / static_cast<double>(kScenarios.size() * options.seeds.count()),
+                       fmt::format("{}, seed {}", scenario, seed));
+      if (auto added = add_drive(spec, speeds); !added) return added.error();
+    }
+    report.data["results"].push_back({{"scenario", scenario},
+                                      {"in_process", json_of(speeds.threads)},
+                                      {"to_bag", json_of(speeds.bag)},
+                                      {"in_process_1_thread", json_of(speeds.one_thread)}});
+    table.add_row({scenario, ratio_text(speeds.threads.realtime_factor()),
+                   ratio_text(speeds.bag.realtime_factor()),
+                   ratio_text(speeds.one_thread.realtime_factor()),
+                   ratio_text(speeds.one_thread.cpu_factor())});
+  }
+  report.markdown = table.markdown();
+  report.markdown +=
+      "\nTimes real time, by the wall clock and (last column) by the CPU time of all threads, for a "
+      "16 x 1800 LiDAR at 10 Hz and an IMU at 200 Hz.\n";
+  return report;
+}
+
+}  // namespace holdfast::benchmarks

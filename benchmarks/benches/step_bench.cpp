@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "benchmarks/benches/all.hpp"
+#include "benchmarks/benches/filter_run.hpp"
+#include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/scratch_folder.hpp"
+#include "benchmarks/harness/table.hpp"
+#include "benchmarks/yardsticks/log_reading.hpp"
+#include "evaluation/result/number_text.hpp"
+#include "evaluation/statistics.hpp"
+#include "holdfast/core/stage_clock.hpp"
+#include "holdfast/io/log_file.hpp"
+
+namespace holdfast::benchmarks {
+namespace {
+
+constexpr std::array kScenarios = {"corridor", "office", "hall"};
+
+/// All scans of one scenario that were tracked, over its seeds.
+struct StepFigures {
+  std::vector<double> returns, points;
+  std::vector<double> filter_ms, start_ms, tree_ms, reading_ms;
+  std::array<double, kStageNames.size()> stage_ms{};
+  std::vector<double> filter_error_m, tree_error_m;
+  double iterations = 0, searches = 0;  ///< of the tree's registrations, summed
+
+  double stage_share(std::size_t stage) const {
+    double sum = 0;
+    for (const double ms : filter_ms) sum += ms;
+    return stage_ms[stage] / sum;
+  }
+  /// Typical time of the k-d-tree registration by that of the whole step.
+  double tree_by_filter() const {
+    return evaluation::median(tree_ms) / evaluation::median(filter_ms);
+  }
+  double filter_by_reading() const {
+    return evaluation::median(filter_ms) / evaluation::median(reading_ms);
+  }
+};
+
+/// Position errors of the filter, and of a registration, against the truth at the scan's end.
+double error_m(const SE3& T_map_body, const SE3& truth) {
+  return (T_map_body.translation - truth.translation).norm();
+}
+
+void add_step(const FilteredScan& scan, const SE3& truth, StepFigures& figures) {
+  const StepReport& report = scan.report;
+  figures.returns.push_back(static_cast<double>(scan.returns));
+  figures.points.push_back(static_cast<double>(scan.points.size()));
+  figures.filter_ms.push_back(report.times.total_ms);
+  for (std::size_t i = 0; i < kStageNames.size(); ++i) figures.stage_ms[i] += report.times.ms[i];
+  figures.filter_error_m.push_back(error_m(report.T_map_body, truth));
+}
+
+void add_registration(const FilteredScan& scan, const SE3& truth, const SE3& T_body_lidar,
+                      KdTreeRegistration& tree, StepFigures& figures) {
+  const double begin = thread_cpu_ms();
+  const Registration found = tree.align(scan.points, T_body_lidar.translation, scan.predicted);
+  figures.tree_ms.push_back(thread_cpu_ms() - begin);
+  figures.tree_error_m.push_back(error_m(found.T_map_body, truth));
+  figures.iterations += found.iterations;
+  figures.searches += found.searches;
+}
+
+/// One drive: recorded, read, localized, and registered again scan by scan. Each pass goes over the
+/// whole log, so that none finds the caches as another left them.
+Status add_drive(const DriveSpec& spec, StepFigures& figures) {
+  auto scratch = ScratchFolder::create();
+  if (!scratch) return scratch.error();
+  auto drive = survey_drive(spec, scratch->path());
+  if (!drive) return drive.error();
+  const auto bag = *scratch / "run.bag";
+  if (auto recorded = record_bag(*drive->simulation, bag); !recorded) return recorded;
+  const auto reading = time_reading(bag);
+  if (!reading) return reading.error();
+  figures.reading_ms.insert(figures.reading_ms.end(), reading->begin(), reading->end());
+  auto log = io::open_log(bag, {});
+  if (!log) return log.error();
+  const auto scans = run_filter(**log, *drive);
+  if (!scans) return scans.error();
+  auto cloud = drive->simulation->survey_map();
+  KdTreeRegistration tree(std::move(cloud.points));
+  for (const FilteredScan& scan : *scans) {
+    if (scan.points.size() == 0) {
+      figures.start_ms.push_back(scan.report.times.total_ms);
+      continue;
+    }
+    const SE3 truth = drive->simulation->truth_at(scan.report.pose_time);
+    add_step(scan, truth, figures);
+    add_registration(scan, truth, drive->config.T_body_lidar, tree, figures);
+  }
+  return Done{};
+}
+
+nlohmann::ordered_json json_of(const char* scenario, const StepFigures& f) {
+  const auto steps = static_cast<double>(f.filter_ms.size());
+  nlohmann::ordered_json j;
+  j["scenario"] = scenario;
+  j["scans"] = f.filter_ms.size();
+  j["returns"] = known(evaluation::median(f.returns));
+  j["points"] = known(evaluation::median(f.points));
+  j["map_filter"]["step_ms"] = json_of(distribution_of(f.filter_ms));
+  for (std::size_t i = 0; i < kStageNames.size(); ++i) {
+    j["map_filter"]["stage_share"][std::string(kStageNames[i])] = known(f.stage_share(i));
+  }
+  j["map_filter"]["first_scan_ms"] = known(evaluation::median(f.start_ms));
+  j["map_filter"]["rmse_m"] = known(evaluation::error_statistics(f.filter_error_m).rmse);
+  j["kd_tree"]["step_ms"] = json_of(distribution_of(f.tree_ms));
+  j["kd_tree"]["iterations"] = known(f.iterations / steps);
+  j["kd_tree"]["searches"] = known(f.searches / steps);
+  j["kd_tree"]["rmse_m"] = known(evaluation::error_statistics(f.tree_error_m).rmse);
+  j["reading"]["scan_ms"] = json_of(distribution_of(f.reading_ms));
+  j["kd_tree_by_map_filter"] = known(f.tree_by_filter());
+  j["map_filter_by_reading"] = known(f.filter_by_reading());
+  return j;
+}
+
+Table times_table() {
+  return Table({"scenario", "returns", "points", "step p50", "p95", "p99", "max", "first scan",
+                "k-d tree p50", "k-d tree / step", "reading p50", "step / reading"});
+}
+
+void add_times(const char* scenario, const StepFigures& f, Table& table) {
+  using namespace evaluation;
+  const Distribution step = distribution_of(f.filter_ms);
+  table.add_row({scenario, count_text(median(f.returns)), count_text(median(f.points)),
+                 milliseconds_text(step.p50), milliseconds_text(step.p95),
+                 milliseconds_text(step.p99), milliseconds_text(step.max),
+                 milliseconds_text(median(f.start_ms)), milliseconds_text(median(f.tree_ms)),
+                 ratio_text(f.tree_by_filter()), milliseconds_text(median(f.reading_ms)),
+                 ratio_text(f.filter_by_reading())});
+}
+
+Table shares_table() {
+  std::vector<std::string> header = {"scenario"};
+  for (const auto name : kStageNames) header.emplace_back(name);
+  header.insert(header.end(), {"searches a scan, k-d tree", "RMSE map_filter", "RMSE k-d tree"});
+  return Table(header);
+}
+
+void add_shares(const char* scenario, const StepFigures& f, Table& table) {
+  using namespace evaluation;
+  std::vector<std::string> row = {scenario};
+  for (std::size_t i = 0; i < kStageNames.size(); ++i) row.push_back(share_text(f.stage_share(i)));
+  row.push_back(plain_text(f.searches / static_cast<double>(f.filter_ms.size())));
+  row.push_back(length_text(error_statistics(f.filter_error_m).rmse));
+  row.push_back(length_text(error_statistics(f.tree_error_m).rmse));
+  table.add_row(row);
+}
+
+constexpr const char* kTimesNote =
+    "Thread CPU time. A step is all of map_filter's work on one scan; the k-d tree's time is "
+    "registration alone, given the prediction and the deskewed points.\n";
+constexpr const char* kSharesNote =
+    "Shares of map_filter's stages, and position errors of both from the same predictions.\n";
+
+}  // namespace
+
+Result<BenchReport> measure_step(const BenchOptions& options) {
+  BenchReport report;
+  Table times = times_table();
+  Table shares = shares_table();
+  const auto all = static_cast<double>(kScenarios.size() * options.seeds.count());
+  double done = 0;
+  for (const char* scenario : kScenarios) {
+    StepFigures figures;
+    for (auto seed = options.seeds.first; seed <= options.seeds.last; ++seed) {
+      options.progress(done++ / all, fmt::format("{}, seed {}", scenario, seed));
+      const DriveSpec spec{scenario, seed, options.duration_s, options.threads};
+      if (auto added = add_drive(spec, figures); !added) return added.error();
+    }
+    report.data["results"].push_back(json_of(scenario, figures));
+    add_times(scenario, figures, times);
+    add_shares(scenario, figures, shares);
+  }
+  report.markdown = fmt::format("{}\n{}\n{}\n{}", times.markdown(), kTimesNote, shares.markdown(),
+                                kSharesNote);
+  return report;
+}
+
+}  // namespace holdfast::benchmarks

@@ -1,0 +1,34 @@
+#include "benchmarks/harness/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "evaluation/statistics.hpp"
+
+namespace holdfast::benchmarks {
+
+Distribution distribution_of(const std::vector<double>& values) {
+  const auto at = [&](double q) { return evaluation::quantile(values, q); };
+  return {at(0.5), at(0.95), at(0.99), at(1.0)};
+}
+
+nlohmann::ordered_json json_of(const Distribution& d) {
+  return {{"p50", known(d.p50)}, {"p95", known(d.p95)}, {"p99", known(d.p99)}, {"max", known(d.max)}};
+}
+
+std::string ratio_text(double ratio) {
+  if (!std::isfinite(ratio)) return "-";
+  const int decimals = ratio < 9.995 ? 2 : ratio < 99.95 ? 1 : 0;
+  return fmt::format("{:.{}f} x", ratio, decimals);
+}
+
+std::string memory_text(double megabytes) {
+  return std::isfinite(megabytes) ? fmt::format("{:.0f} MB", megabytes) : "-";
+}
+
+nlohmann::ordered_json known(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace holdfast::benchmarks

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+/// Figures as they enter tables and JSON.
+namespace holdfast::benchmarks {
+
+/// Times in ms of many steps.
+struct Distribution {
+  double p50 = 0, p95 = 0, p99 = 0, max = 0;
+};
+
+/// All NaN for no values.
+Distribution distribution_of(const std::vector<double>& values);
+
+/// {"p50": ..., "p95": ..., "p99": ..., "max": ...}.
+nlohmann::ordered_json json_of(const Distribution& distribution);
+
+/// "11.7 x" with three digits; "-" for what is not known.
+std::string ratio_text(double ratio);
+
+/// "143 MB".
+std::string memory_text(double megabytes);
+
+/// A number, or null for what is not known or infinite.
+nlohmann::ordered_json known(double value);
+
+}  // namespace holdfast::benchmarks
