@@ -22,7 +22,7 @@ Status write_bag(Simulation& simulation, const std::filesystem::path& path,
     if (!event) return event.error();
     if (!event->has_value()) break;
     const auto write = [&](const auto& message) { return (*writer)->write(message); };
-    const Status written = std::visit(write, **event);
+    Status written = std::visit(write, **event);
     if (!written) return written;
     if (std::holds_alternative<Scan>(**event)) {
       progress(kStreamShare * simulation.progress(), "driving");

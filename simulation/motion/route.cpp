@@ -64,6 +64,7 @@ Route Route::closed(const std::vector<RouteCorner>& corners) {
 
 Route Route::closed(const std::vector<Eigen::Vector2d>& corners, double radius_m) {
   std::vector<RouteCorner> rounded;
+  rounded.reserve(corners.size());
   for (const auto& c : corners) rounded.push_back({{c.x(), c.y(), 0}, radius_m});
   return closed(rounded);
 }
