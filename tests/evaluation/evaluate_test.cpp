@@ -103,6 +103,14 @@ TEST(Evaluate, WithoutStepsAnEstimateThatStopsEarlyIsMissingTheRest) {
   EXPECT_FALSE(e.e2e_m) << "nothing was claimed at the last scan";
 }
 
+TEST(Evaluate, WithoutStepsAnEstimateThatBeginsLateIsMissingTheScansBefore) {
+  const auto kept = [](double t) { return t > 5.05; };
+  const Evaluation e = judged(only(claims_of(20, straight), kept), truth_of(20, straight));
+  EXPECT_EQ(e.scans, 200U);
+  EXPECT_EQ(e.coverage.of, 180U);
+  EXPECT_EQ(e.coverage.count, 150U);
+}
+
 TEST(Evaluate, WithStepsTheirRowsAreTheScansThatWereDue) {
   RunContext context;
   context.steps = steps(0.1, 20, [](double t) { return t < 10 ? "TRACKING" : "LOST"; });
