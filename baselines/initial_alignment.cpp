@@ -14,49 +14,80 @@ struct DescentStage {
   int iterations;
 };
 
+/// What is assumed of the velocity: a slow robot's scan is hardly skewed, and the coarse stages only
+/// suffer from freedom that they cannot use; a fast one's must be unskewed from the first stage on.
+struct Motion {
+  bool free_when_coarse;
+  double level_m_s;     ///< standard deviation of the horizontal velocity
+  double vertical_m_s;
+};
+
 /// From planes that reach a metre to the finest, the last with the noise as it is.
 constexpr std::array<DescentStage, 4> kDescent = {{{2, 1.2F, 0.35F, 6},
                                                    {2, 0.8F, 0.15F, 6},
                                                    {1, 0.5F, 0.05F, 5},
-                                                   {0, 0.3F, 0.02F, 5}}};
+                                                   {0, 0.3F, 0.005F, 8}}};
+constexpr std::size_t kFirstFine = 2;  // stages from here on are fine enough to tell a velocity
 constexpr std::size_t kSearchPoints = 700;
-constexpr std::size_t kRefined = 4;
+constexpr std::size_t kRefined = 6;
 
 struct Candidate {
+  FilterState start;
   FilterState state;
+  Motion motion;
   double score = 0;
-  int number = 0;  ///< in the pattern: breaks ties
 };
 
-Matrix15d wide_covariance(const InitialUncertainty& u) {
+/// Position and yaw are as uncertain as the user's pose. Coarse pairs would take a table for the
+/// floor, so that height and tilt (known from gravity) are held until the pairs are fine.
+Matrix15d covariance(const InitialUncertainty& u, const Motion& motion, const SE3& T_map_body,
+                     bool coarse) {
+  const double tilt_sigma = coarse ? 0.01 : 0.05;
+  const double height_sigma = coarse ? 0.02 : u.position_m;
   Matrix15d P = Matrix15d::Zero();
-  const auto set = [&P](int offset, double sigma) {
-    P.diagonal().segment<3>(offset).setConstant(sigma * sigma);
-  };
-  set(FilterState::kP, u.position_m);
-  set(FilterState::kR, u.rotation_rad);
-  set(FilterState::kV, u.speed_m_s);
-  set(FilterState::kBa, 0.1);
-  set(FilterState::kBg, 0.02);
+  P.diagonal().segment<2>(FilterState::kP).setConstant(u.position_m * u.position_m);
+  P(FilterState::kP + 2, FilterState::kP + 2) = height_sigma * height_sigma;
+  // The rotation's error lives in the body frame, the vertical in the map's.
+  const Eigen::Vector3d up = T_map_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  P.block<3, 3>(FilterState::kR, FilterState::kR) =
+      tilt_sigma * tilt_sigma * Eigen::Matrix3d::Identity() +
+      u.rotation_rad * u.rotation_rad * up * up.transpose();
+  P.diagonal().segment<2>(FilterState::kV).setConstant(motion.level_m_s * motion.level_m_s);
+  P(FilterState::kV + 2, FilterState::kV + 2) = motion.vertical_m_s * motion.vertical_m_s;
+  P.diagonal().segment<3>(FilterState::kBa).setConstant(0.1 * 0.1);
+  P.diagonal().segment<3>(FilterState::kBg).setConstant(0.02 * 0.02);
   return P;
 }
 
-/// The given pose first, then shifted in the horizontal plane and turned about the vertical.
-std::vector<FilterState> pattern(const FilterState& prior, const InitialUncertainty& u,
-                                 const Eigen::Vector3d& gravity) {
+/// The pose turned by the least angle that makes the mean specific force of the scan point upwards.
+/// Wrong by the acceleration over g, which a robot at its start rarely has.
+SE3 levelled(const SE3& T_map_body, const preprocess::ImuSegment& imu,
+             const Eigen::Vector3d& gravity) {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  for (const ImuSample& sample : imu.samples) force += sample.accel_m_s2;
+  const Eigen::Vector3d in_map = T_map_body.rotation * force;
+  const auto turn = Eigen::Quaterniond::FromTwoVectors(in_map, -gravity);
+  return {(turn * T_map_body.rotation).normalized(), T_map_body.translation};
+}
+
+/// The given pose first, then shifted in the horizontal plane and turned about the vertical; each as
+/// given and levelled.
+std::vector<FilterState> pattern(const FilterState& prior, const preprocess::ImuSegment& imu,
+                                 const InitialUncertainty& u, const Eigen::Vector3d& gravity) {
   constexpr std::array<double, 5> kTurns = {0.0, 0.4, -0.4, 0.9, -0.9};
   constexpr std::array<std::array<double, 2>, 9> kShifts = {
       {{0, 0}, {0.7, 0}, {-0.7, 0}, {0, 0.7}, {0, -0.7}, {0.6, 0.6}, {-0.6, 0.6}, {0.6, -0.6},
        {-0.6, -0.6}}};
-  const Eigen::Vector3d up = -gravity.normalized();
   std::vector<FilterState> states;
-  for (const double turn : kTurns) {
-    for (const auto& shift : kShifts) {
-      FilterState s = prior;
-      const Eigen::AngleAxisd yaw(turn * u.rotation_rad, up);
-      s.T_map_body.rotation = (Eigen::Quaterniond(yaw) * s.T_map_body.rotation).normalized();
-      s.T_map_body.translation += u.position_m * Eigen::Vector3d(shift[0], shift[1], 0);
-      states.push_back(s);
+  for (const SE3& base : {levelled(prior.T_map_body, imu, gravity), prior.T_map_body}) {
+    for (const double turn : kTurns) {
+      for (const auto& shift : kShifts) {
+        FilterState s = prior;
+        const Eigen::AngleAxisd yaw(turn * u.rotation_rad, -gravity.normalized());
+        s.T_map_body.rotation = (Eigen::Quaterniond(yaw) * base.rotation).normalized();
+        s.T_map_body.translation += u.position_m * Eigen::Vector3d(shift[0], shift[1], 0);
+        states.push_back(s);
+      }
     }
   }
   return states;
@@ -84,20 +115,53 @@ struct Search {
   WorkerPool& pool;
   UpdateWorkspace& work;
 
+  /// The height at which most points lie on planes, x, y and rotation being about right. The points
+  /// stand deskewed in `work`.
+  void choose_height(FilterState& state) const {
+    constexpr int kSteps = 10;
+    registration::AssociationOptions near = options.association;
+    near.level = 1;
+    near.gate_m = 0.2F;
+    near.surface_sigma_m = 0.05F;
+    near.ambiguity_sigmas = 0;
+    const double low = state.T_map_body.translation.z() - uncertainty.position_m;
+    double best_weight = -1;
+    double best_z = state.T_map_body.translation.z();
+    for (int k = 0; k <= 2 * kSteps; ++k) {
+      SE3 T_anchor_body{state.T_map_body.rotation, state.T_map_body.translation - map.anchor()};
+      const double z = low + uncertainty.position_m * k / kSteps;
+      T_anchor_body.translation.z() = z - map.anchor().z();
+      registration::associate(map, T_anchor_body, Eigen::Vector3d::Zero(), work.points, near, pool,
+                              work.pairs);
+      const double weight =
+          registration::linearise(work.pairs, T_anchor_body, 1.0, pool, work.partials).weight;
+      if (weight <= best_weight) continue;
+      best_weight = weight;
+      best_z = z;
+    }
+    state.T_map_body.translation.z() = best_z;
+  }
+
   /// Draws `state` into the map, stages [first, end); score = sum of robust weights at the last.
-  double descend(const SelectedScan& scan, std::size_t first, FilterState& state) const {
+  double descend(const SelectedScan& scan, std::size_t first, Candidate& candidate) const {
+    const Motion& motion = candidate.motion;
     double score = 0;
     for (std::size_t i = first; i < kDescent.size(); ++i) {
       UpdateOptions stage = options;
       stage.association.level = kDescent[i].level;
       stage.association.gate_m = kDescent[i].gate_m;
       stage.association.surface_sigma_m = kDescent[i].surface_sigma_m;
+      // While the pose is off by more than the planes of an edge are apart, every point is ambiguous.
+      if (i + 1 < kDescent.size()) stage.association.ambiguity_sigmas = 0;
       stage.max_iterations = kDescent[i].iterations;
-      // Each stage starts from the pose of the one before, not from its covariance: the same points
-      // must not count twice.
-      state.P = wide_covariance(uncertainty);
+      stage.velocity_from_skew = motion.free_when_coarse || i >= kFirstFine;
+      // Each stage starts from the pose of the one before, but keeps the prior of the first: the
+      // same points must not count twice.
+      FilterState prior = candidate.start;
+      prior.P = covariance(uncertainty, motion, prior.T_map_body, i < kFirstFine);
+      if (first == 0 && i == kFirstFine) choose_height(candidate.state);
       const UpdateResult result =
-          update_with_scan(map, scan, gravity, stage, pool, work, state, nullptr);
+          update_with_scan(map, scan, gravity, stage, pool, work, prior, candidate.state, nullptr);
       if (!result.usable) return 0;
       score = result.equations.weight;
     }
@@ -107,16 +171,39 @@ struct Search {
 
 std::vector<Candidate> ranked(const Search& search, const SelectedScan& few,
                               const FilterState& prior) {
+  const double speed = search.uncertainty.speed_m_s;
+  const std::array<Motion, 2> motions = {
+      {{false, std::min(1.5, speed), std::min(0.2, speed)}, {true, speed, std::min(1.0, speed)}}};
   std::vector<Candidate> candidates;
-  int number = 0;
-  for (FilterState& state : pattern(prior, search.uncertainty, search.gravity)) {
-    Candidate candidate{state, 0, number++};
-    candidate.score = search.descend(few, 0, candidate.state);
-    candidates.push_back(candidate);
+  for (const Motion& motion : motions) {
+    for (const FilterState& start : pattern(prior, few.imu, search.uncertainty, search.gravity)) {
+      Candidate candidate{start, start, motion, 0};
+      candidate.score = search.descend(few, 0, candidate);
+      candidates.push_back(candidate);
+    }
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
   return candidates;
+}
+
+bool same_place(const FilterState& a, const FilterState& b) {
+  return (a.T_map_body.translation - b.T_map_body.translation).norm() < 0.1 &&
+         so3::angle_between(a.T_map_body.rotation, b.T_map_body.rotation) < 0.03 &&
+         (a.v_map - b.v_map).norm() < 0.5;
+}
+
+/// The first `most` candidates that are not copies of a better one.
+std::vector<Candidate> distinct(const std::vector<Candidate>& candidates, std::size_t most) {
+  std::vector<Candidate> kept;
+  for (const Candidate& candidate : candidates) {
+    const bool copy = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
+      return same_place(candidate.state, other.state);
+    });
+    if (!copy) kept.push_back(candidate);
+    if (kept.size() == most) break;
+  }
+  return kept;
 }
 
 }  // namespace
@@ -126,20 +213,16 @@ InitialAlignment align_initially(const map::PriorMap& map, const SelectedScan& s
                                  const Eigen::Vector3d& gravity, const UpdateOptions& options,
                                  WorkerPool& pool, UpdateWorkspace& work) {
   const Search search{map, gravity, options, uncertainty, pool, work};
-  const std::vector<Candidate> candidates = ranked(search, thinned(scan, kSearchPoints), prior);
+  std::vector<Candidate> candidates =
+      distinct(ranked(search, thinned(scan, kSearchPoints), prior), kRefined);
   InitialAlignment best;
   double best_score = 0;
-  for (std::size_t i = 0; i < std::min(kRefined, candidates.size()); ++i) {
-    FilterState state = candidates[i].state;
-    if (search.descend(scan, 2, state) <= 0) continue;
-    // Last with the noise as it is, for a covariance that can be believed.
-    state.P = wide_covariance(uncertainty);
-    const UpdateResult result =
-        update_with_scan(map, scan, gravity, options, pool, work, state, nullptr);
-    if (!result.usable || result.equations.weight <= best_score) continue;
-    best_score = result.equations.weight;
-    best.state = state;
-    best.inlier_share = best_score / static_cast<double>(scan.selected.size());
+  for (Candidate& candidate : candidates) {
+    const double score = search.descend(scan, kFirstFine, candidate);
+    if (score <= best_score) continue;
+    best_score = score;
+    best.state = candidate.state;
+    best.inlier_share = score / static_cast<double>(scan.selected.size());
     best.found = true;
   }
   return best;

@@ -135,8 +135,8 @@ void MapFilter::track(StageClock& clock, StepReport& report) {
     const double sigma = largest_sigma(state_.P, FilterState::kP);
     how.association.gate_m = std::max(how.association.gate_m, static_cast<float>(3.0 * sigma));
     how.association.level = sigma > 0.3 ? 2 : sigma > 0.1 ? 1 : 0;
-    update = update_with_scan(map_, scan_, map_.info().gravity_map, how, pool_, work_, state_,
-                              &clock);
+    update = update_with_scan(map_, scan_, map_.info().gravity_map, how, pool_, work_, predicted,
+                              state_, &clock);
     const double share = update.equations.weight / static_cast<double>(scan_.selected.size());
     update.usable = update.usable && share >= setup_.filter.min_inlier_share;
     if (!update.usable) state_ = predicted;

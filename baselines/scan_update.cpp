@@ -81,9 +81,9 @@ class Iteration {
  public:
   Iteration(const map::PriorMap& map, const SelectedScan& scan, const Eigen::Vector3d& gravity,
             const UpdateOptions& options, WorkerPool& pool, UpdateWorkspace& work,
-            FilterState& state, StageClock* clock)
+            const FilterState& prior, FilterState& state, StageClock* clock)
       : map_(map), scan_(scan), gravity_(gravity), options_(options), pool_(pool), work_(work),
-        state_(state), clock_(clock), prior_(state), deskewed_(state), paired_(state),
+        state_(state), clock_(clock), prior_(prior), deskewed_(state), paired_(state),
         prior_information_(prior_.P.ldlt().solve(Matrix15d::Identity())) {}
 
   UpdateResult run() {
@@ -175,9 +175,9 @@ class Iteration {
 
 UpdateResult update_with_scan(const map::PriorMap& map, const SelectedScan& scan,
                               const Eigen::Vector3d& gravity, const UpdateOptions& options,
-                              WorkerPool& pool, UpdateWorkspace& work, FilterState& state,
-                              StageClock* clock) {
-  return Iteration(map, scan, gravity, options, pool, work, state, clock).run();
+                              WorkerPool& pool, UpdateWorkspace& work, const FilterState& prior,
+                              FilterState& state, StageClock* clock) {
+  return Iteration(map, scan, gravity, options, pool, work, prior, state, clock).run();
 }
 
 }  // namespace holdfast::baselines

@@ -46,14 +46,14 @@ struct UpdateWorkspace {
   std::vector<registration::NormalEquations> partials;
 };
 
-/// Iterated update of `state` (a prediction at the scan's end) with one scan: Gauss-Newton on the
-/// prior and all point-to-plane residuals. The residuals depend on the velocity too, since it moved
+/// Iterated update with one scan: Gauss-Newton, from `state`, on `prior` (a prediction at the scan's
+/// end, with its covariance) and all point-to-plane residuals. The residuals depend on the velocity too, since it moved
 /// the points during the scan; so a single scan can tell the velocity of a robot that starts on the
 /// move (UpdateOptions::velocity_from_skew). The map's own error is common to all points of a scan: a pose offset with `map_sigma` is
 /// marginalised out, which caps the information however many points there are.
 UpdateResult update_with_scan(const map::PriorMap& map, const SelectedScan& scan,
                               const Eigen::Vector3d& gravity, const UpdateOptions& options,
-                              WorkerPool& pool, UpdateWorkspace& work, FilterState& state,
-                              StageClock* clock);
+                              WorkerPool& pool, UpdateWorkspace& work, const FilterState& prior,
+                              FilterState& state, StageClock* clock);
 
 }  // namespace holdfast::baselines

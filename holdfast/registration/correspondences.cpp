@@ -35,7 +35,6 @@ struct Query {
   /// The nearest plane of a cell, unless the point may as well belong to the next one: a wrong plane
   /// at an edge is worse than none.
   Choice choose_in_cell(const Eigen::Vector3f& p, const map::PriorMap::Hit& hit) const {
-    constexpr float kAmbiguousSigmas = 3.0F;
     const Eigen::Vector3f in_tile = p - hit.corner;
     Choice best;
     float least = options.gate_m;
@@ -55,7 +54,7 @@ struct Query {
       }
       if (s->more == 0) break;
     }
-    return next_sigmas < kAmbiguousSigmas ? Choice{} : best;
+    return next_sigmas < options.ambiguity_sigmas ? Choice{} : best;
   }
 
   float best_sigmas(const Choice& c, const Eigen::Vector3f& p) const {

@@ -43,6 +43,7 @@ struct AssociationOptions {
   float gate_m = 0.3F;         ///< farther planes are no correspondence
   float range_sigma_m = 0.02F; ///< of the LiDAR along the ray
   float surface_sigma_m = 0.003F; ///< least error of a plane, added to its own thickness
+  float ambiguity_sigmas = 3.0F;  ///< a point this near to a second plane of its cell is left out
 };
 
 /// Pairs each point with the nearest plane of its cell at the pose `T_anchor_body` (article 3.2.2
