@@ -31,9 +31,7 @@ ImuSample reading(const Eigen::Vector3d& gyro, const Eigen::Vector3d& accel) {
   return {0, gyro, accel};
 }
 
-SE3 some_extrinsic() {
-  return {so3::exp({0.02, -0.03, 1.2}), {0.3, -0.1, 0.8}};
-}
+SE3 some_extrinsic() { return {so3::exp({0.02, -0.03, 1.2}), {0.3, -0.1, 0.8}}; }
 
 /// Ten points all around, ten metres away, measured at `share` of the scan.
 std::vector<ScanPoint> points_at(double share, double range = 10.0) {
@@ -72,9 +70,12 @@ TEST(ScanMotion, AtRestPointsOnlyChangeIntoTheBodyFrame) {
   EndState end;
   end.gravity_end = T_map_body.rotation.conjugate() * Eigen::Vector3d(0, 0, -kGravity);
   ScanMotion motion;
-  motion.set(readings([&](double) { return reading({0, 0, 0}, -end.gravity_end); }), end,
-             T_body_lidar, kStamp, kStamp + kSpan);
-  expect_motion(motion, T_body_lidar, [](double) { return SE3{}; }, 10.0, kFloatAt10m);
+  motion.set(readings([&](double) {
+               return reading({0, 0, 0}, -end.gravity_end);
+             }),
+             end, T_body_lidar, kStamp, kStamp + kSpan);
+  expect_motion(
+      motion, T_body_lidar, [](double) { return SE3{}; }, 10.0, kFloatAt10m);
 }
 
 TEST(ScanMotion, BiasesAreTakenOffTheReadings) {
@@ -83,11 +84,11 @@ TEST(ScanMotion, BiasesAreTakenOffTheReadings) {
   end.gyro_bias = {0.2, -0.1, 0.3};
   end.accel_bias = {0.5, 0.4, -0.3};
   ScanMotion motion;
-  motion.set(readings([&](double) {
-               return reading(end.gyro_bias, end.accel_bias - end.gravity_end);
-             }),
-             end, SE3{}, kStamp, kStamp + kSpan);
-  expect_motion(motion, SE3{}, [](double) { return SE3{}; }, 10.0, kFloatAt10m);
+  motion.set(
+      readings([&](double) { return reading(end.gyro_bias, end.accel_bias - end.gravity_end); }),
+      end, SE3{}, kStamp, kStamp + kSpan);
+  expect_motion(
+      motion, SE3{}, [](double) { return SE3{}; }, 10.0, kFloatAt10m);
 }
 
 TEST(ScanMotion, ConstantVelocityMovesPointsBackByTheirAge) {
@@ -96,8 +97,10 @@ TEST(ScanMotion, ConstantVelocityMovesPointsBackByTheirAge) {
   end.v_end = {11.0, -2.0, 0.5};
   end.gravity_end = {0, 0, -kGravity};
   ScanMotion motion;
-  motion.set(readings([&](double) { return reading({0, 0, 0}, {0, 0, kGravity}); }), end,
-             T_body_lidar, kStamp, kStamp + kSpan);
+  motion.set(readings([&](double) {
+               return reading({0, 0, 0}, {0, 0, kGravity});
+             }),
+             end, T_body_lidar, kStamp, kStamp + kSpan);
   expect_motion(
       motion, T_body_lidar,
       [&](double age) {
@@ -112,10 +115,12 @@ TEST(ScanMotion, ConstantAccelerationIsAParabola) {
   end.gravity_end = {0, 0, -kGravity};
   const Eigen::Vector3d a(-6.0, 2.0, 0.5);
   ScanMotion motion;
-  motion.set(readings([&](double) { return reading({0, 0, 0}, a - end.gravity_end); }), end, SE3{},
-             kStamp, kStamp + kSpan);
-  // A point between two knots (0.1 s / 63 apart) is moved to first order; what is left of the parabola
-  // over one knot is a dt^2 / 8, at the one-sided first knot too.
+  motion.set(readings([&](double) {
+               return reading({0, 0, 0}, a - end.gravity_end);
+             }),
+             end, SE3{}, kStamp, kStamp + kSpan);
+  // A point between two knots (0.1 s / 63 apart) is moved to first order; what is left of the
+  // parabola over one knot is a dt^2 / 8, at the one-sided first knot too.
   const double knot = 0.1 / (ScanMotion::kKnots - 1);
   expect_motion(
       motion, SE3{},
@@ -131,8 +136,10 @@ TEST(ScanMotion, TurningOnTheSpotSwingsTheLidarAroundTheBody) {
   EndState end;
   end.gravity_end = {0, 0, -kGravity};
   ScanMotion motion;
-  motion.set(readings([&](double) { return reading(rate, {0, 0, kGravity}); }), end, T_body_lidar,
-             kStamp, kStamp + kSpan);
+  motion.set(readings([&](double) {
+               return reading(rate, {0, 0, kGravity});
+             }),
+             end, T_body_lidar, kStamp, kStamp + kSpan);
   // The lever arm is 0.3 m and the points are 10 m away: the remainder of first order between knots
   // is (rate dt)^2 / 8 of that.
   const double angle = rate.norm() * 0.1 / (ScanMotion::kKnots - 1);
@@ -152,9 +159,8 @@ TEST(ScanMotion, ACircleDrivenAtConstantSpeedIsAnArc) {
   end.gravity_end = {0, 0, -kGravity};
   const Eigen::Vector3d centripetal = rate.cross(end.v_end);
   ScanMotion motion;
-  motion.set(
-      readings([&](double) { return reading(rate, centripetal - end.gravity_end); }), end,
-      T_body_lidar, kStamp, kStamp + kSpan);
+  motion.set(readings([&](double) { return reading(rate, centripetal - end.gravity_end); }), end,
+             T_body_lidar, kStamp, kStamp + kSpan);
   // The midpoint rule errs by a (rate dt)^2 / 24 in the acceleration; the first order between knots
   // by a dt^2 / 8 and (rate dt)^2 / 8 of 11 m.
   const double knot = 0.1 / (ScanMotion::kKnots - 1);
@@ -177,8 +183,10 @@ TEST(ScanMotion, AtThreeRadiansASecondAndFiftyMetresTheRemainderIsBelowAFifthOfA
   EndState end;
   end.gravity_end = {0, 0, -kGravity};
   ScanMotion motion;
-  motion.set(readings([&](double) { return reading(rate, {0, 0, kGravity}); }), end, SE3{}, kStamp,
-             kStamp + kSpan);
+  motion.set(readings([&](double) {
+               return reading(rate, {0, 0, kGravity});
+             }),
+             end, SE3{}, kStamp, kStamp + kSpan);
   expect_motion(
       motion, SE3{},
       [&](double age) {
@@ -192,8 +200,10 @@ TEST(ScanMotion, PosesAtKnotsAreThoseOfTheMotion) {
   EndState end;  // free fall: no specific force, no gravity
   end.v_end = {1.0, 2.0, 3.0};
   ScanMotion motion;
-  motion.set(readings([&](double) { return reading(rate, {0, 0, 0}); }), end, SE3{}, kStamp,
-             kStamp + kSpan);
+  motion.set(readings([&](double) {
+               return reading(rate, {0, 0, 0});
+             }),
+             end, SE3{}, kStamp, kStamp + kSpan);
   ASSERT_EQ(motion.knot_poses().size(), static_cast<std::size_t>(ScanMotion::kKnots));
   for (std::size_t k = 0; k < motion.knot_poses().size(); ++k) {
     const TimeNs t = kSpan * static_cast<TimeNs>(k) / (ScanMotion::kKnots - 1);
@@ -226,8 +236,10 @@ TEST(ScanMotion, PointsOutsideOfTheScansTimesStayFinite) {
   end.v_end = {2.0, 0, 0};
   end.gravity_end = {0, 0, -kGravity};
   ScanMotion motion;
-  motion.set(readings([&](double) { return reading({0, 0, 0}, {0, 0, kGravity}); }), end, SE3{},
-             kStamp, kStamp + kSpan);
+  motion.set(readings([&](double) {
+               return reading({0, 0, 0}, {0, 0, kGravity});
+             }),
+             end, SE3{}, kStamp, kStamp + kSpan);
   for (const std::int32_t offset : {-50'000'000, 150'000'000}) {
     ScanPoint p;
     p.x = 10;

@@ -12,8 +12,8 @@ namespace {
 constexpr TimeNs kPeriod = 5'000'000;  // 200 Hz
 constexpr TimeNs kStart = 1'700'000'000 * kSecond;
 
-/// Readings that grow linearly with time, so that interpolation is exact: gyro x in rad/s is the time
-/// in periods from kStart, accel z ten times that.
+/// Readings that grow linearly with time, so that interpolation is exact: gyro x in rad/s is the
+/// time in periods from kStart, accel z ten times that.
 ImuSample reading(double periods) {
   ImuSample sample;
   sample.t = kStart + static_cast<TimeNs>(periods * kPeriod);
@@ -56,7 +56,8 @@ TEST(ImuBuffer, ASegmentFromReadingToReadingHoldsEachOnce) {
   ImuSegment segment;
   ASSERT_TRUE(buffer.segment(at(3), at(6), segment));
   ASSERT_EQ(segment.samples.size(), 4U);
-  for (std::size_t i = 0; i < 4; ++i) expect_equal(segment.samples[i], 3.0 + static_cast<double>(i));
+  for (std::size_t i = 0; i < 4; ++i)
+    expect_equal(segment.samples[i], 3.0 + static_cast<double>(i));
 }
 
 TEST(ImuBuffer, ASegmentBetweenTwoReadingsHasBothEndsOnly) {
@@ -145,9 +146,9 @@ TEST(ImuBuffer, ReadingsThatAreNotLaterAreRefusedAndCounted) {
 
 TEST(ImuBuffer, ReadingsThatAreNotFiniteAreRefusedAndCounted) {
   ImuBuffer buffer = filled(2);
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
-                           std::numeric_limits<double>::infinity(),
-                           -std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+        -std::numeric_limits<double>::infinity()}) {
     ImuSample gyro = reading(2);
     gyro.gyro_rad_s.y() = bad;
     ImuSample accel = reading(2);
@@ -175,7 +176,8 @@ TEST(ImuBuffer, WhatIsForgottenIsNotNeededByAnyLaterSegment) {
     EXPECT_EQ(segment.samples[i].gyro_rad_s, expected.samples[i].gyro_rad_s);
   }
   EXPECT_EQ(segment.held_ns, 0);
-  ASSERT_TRUE(dropped.segment(at(6.5), at(8), segment));  // earlier: reading 7 is the first one left
+  ASSERT_TRUE(
+      dropped.segment(at(6.5), at(8), segment));  // earlier: reading 7 is the first one left
   EXPECT_EQ(segment.held_ns, kPeriod / 2);
 }
 
