@@ -1,7 +1,8 @@
 #include "baselines/initial_alignment.hpp"
 
 #include <algorithm>
-#include <numbers>
+#include <array>
+#include <functional>
 
 namespace holdfast::baselines {
 namespace {
@@ -78,8 +79,13 @@ std::vector<FilterState> pattern(const FilterState& prior, const preprocess::Imu
   constexpr std::array<std::array<double, 2>, 9> kShifts = {
       {{0, 0}, {0.7, 0}, {-0.7, 0}, {0, 0.7}, {0, -0.7}, {0.6, 0.6}, {-0.6, 0.6}, {0.6, -0.6},
        {-0.6, -0.6}}};
+  constexpr double kSameTilt = 0.02;
+  std::vector<SE3> bases = {levelled(prior.T_map_body, imu, gravity)};
+  if (so3::angle_between(bases[0].rotation, prior.T_map_body.rotation) > kSameTilt) {
+    bases.push_back(prior.T_map_body);
+  }
   std::vector<FilterState> states;
-  for (const SE3& base : {levelled(prior.T_map_body, imu, gravity), prior.T_map_body}) {
+  for (const SE3& base : bases) {
     for (const double turn : kTurns) {
       for (const auto& shift : kShifts) {
         FilterState s = prior;
@@ -142,11 +148,12 @@ struct Search {
     state.T_map_body.translation.z() = best_z;
   }
 
-  /// Draws `state` into the map, stages [first, end); score = sum of robust weights at the last.
-  double descend(const SelectedScan& scan, std::size_t first, Candidate& candidate) const {
+  /// Draws the candidate into the map, stages [first, last); score = sum of robust weights at the last.
+  double descend(const SelectedScan& scan, std::size_t first, std::size_t last,
+                 Candidate& candidate) const {
     const Motion& motion = candidate.motion;
     double score = 0;
-    for (std::size_t i = first; i < kDescent.size(); ++i) {
+    for (std::size_t i = first; i < last; ++i) {
       UpdateOptions stage = options;
       stage.association.level = kDescent[i].level;
       stage.association.gate_m = kDescent[i].gate_m;
@@ -159,7 +166,6 @@ struct Search {
       // same points must not count twice.
       FilterState prior = candidate.start;
       prior.P = covariance(uncertainty, motion, prior.T_map_body, i < kFirstFine);
-      if (first == 0 && i == kFirstFine) choose_height(candidate.state);
       const UpdateResult result =
           update_with_scan(map, scan, gravity, stage, pool, work, prior, candidate.state, nullptr);
       if (!result.usable) return 0;
@@ -177,9 +183,14 @@ std::vector<Candidate> ranked(const Search& search, const SelectedScan& few,
   std::vector<Candidate> candidates;
   for (const Motion& motion : motions) {
     for (const FilterState& start : pattern(prior, few.imu, search.uncertainty, search.gravity)) {
-      Candidate candidate{start, start, motion, 0};
-      candidate.score = search.descend(few, 0, candidate);
-      candidates.push_back(candidate);
+      Candidate given{start, start, motion, 0};
+      search.descend(few, 0, kFirstFine, given);
+      Candidate lifted = given;
+      search.choose_height(lifted.state);
+      for (Candidate& candidate : {std::ref(given), std::ref(lifted)}) {
+        candidate.score = search.descend(few, kFirstFine, kDescent.size(), candidate);
+        candidates.push_back(candidate);
+      }
     }
   }
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -218,7 +229,7 @@ InitialAlignment align_initially(const map::PriorMap& map, const SelectedScan& s
   InitialAlignment best;
   double best_score = 0;
   for (Candidate& candidate : candidates) {
-    const double score = search.descend(scan, kFirstFine, candidate);
+    const double score = search.descend(scan, kFirstFine, kDescent.size(), candidate);
     if (score <= best_score) continue;
     best_score = score;
     best.state = candidate.state;

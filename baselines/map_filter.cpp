@@ -12,6 +12,8 @@ using registration::kRotation;
 constexpr double kMapRadiusM = 150.0;  // tiles farther than this are not needed
 constexpr int kScansToConfirm = 2;
 constexpr TimeNs kImuMemory = 2 * kSecond;
+constexpr double kAccelBiasJump = 0.3;  // m/s^2, what a bias may jump by
+constexpr double kGyroBiasJump = 0.03;  // rad/s
 
 /// Directions in which this scan alone determines the position worse than `sigma`, the rotation being
 /// free: eigenvectors of the Schur complement of the rotation.
@@ -124,22 +126,49 @@ bool MapFilter::predict(TimeNs to, StepReport& report) {
   return true;
 }
 
+UpdateResult MapFilter::correct(StageClock& clock) {
+  if (scan_.selected.empty()) return {};
+  const FilterState predicted = state_;
+  UpdateOptions how = options();
+  // After dead reckoning the planes asked must reach as far as the pose may be off.
+  const double sigma = largest_sigma(state_.P, FilterState::kP);
+  how.association.gate_m = std::max(how.association.gate_m, static_cast<float>(3.0 * sigma));
+  how.association.level = sigma > 0.3 ? 2 : sigma > 0.1 ? 1 : 0;
+  UpdateResult update = update_with_scan(map_, scan_, map_.info().gravity_map, how, pool_, work_,
+                                         predicted, state_, &clock);
+  const double share = update.equations.weight / static_cast<double>(scan_.selected.size());
+  update.usable = update.usable && share >= setup_.filter.min_inlier_share;
+  if (!update.usable) state_ = predicted;
+  return update;
+}
+
+/// True where the scan moved the predicted pose by more than the prediction's covariance allows: the
+/// squared Mahalanobis distance is chi-square with 6 degrees of freedom at most, and exceeds 40 once
+/// in two million scans. After a surprise the filter is given a second to settle: velocity and biases
+/// that were let go follow the errors of single scans.
+bool MapFilter::surprised_by_imu(const FilterState& predicted) const {
+  constexpr double kSurprise = 40.0;
+  constexpr TimeNs kSettle = kSecond * 3 / 10;
+  if (state_.t < last_surprise_ + kSettle) return false;
+  const Eigen::Matrix<double, 6, 1> moved = state_.minus(predicted).head<6>();
+  return moved.dot(predicted.P.topLeftCorner<6, 6>().ldlt().solve(moved)) > kSurprise;
+}
+
 void MapFilter::track(StageClock& clock, StepReport& report) {
+  const FilterState before = state_;
   predict(report.pose_time, report);
+  const FilterState predicted = state_;
   clock.book(Stage::kPredict);
-  UpdateResult update;
-  if (!scan_.selected.empty()) {
-    const FilterState predicted = state_;
-    UpdateOptions how = options();
-    // After dead reckoning the planes asked must reach as far as the pose may be off.
-    const double sigma = largest_sigma(state_.P, FilterState::kP);
-    how.association.gate_m = std::max(how.association.gate_m, static_cast<float>(3.0 * sigma));
-    how.association.level = sigma > 0.3 ? 2 : sigma > 0.1 ? 1 : 0;
-    update = update_with_scan(map_, scan_, map_.info().gravity_map, how, pool_, work_, predicted,
-                              state_, &clock);
-    const double share = update.equations.weight / static_cast<double>(scan_.selected.size());
-    update.usable = update.usable && share >= setup_.filter.min_inlier_share;
-    if (!update.usable) state_ = predicted;
+  UpdateResult update = correct(clock);
+  if (update.usable && surprised_by_imu(predicted)) {
+    last_surprise_ = state_.t;
+    // A bias has jumped, or the IMU is worse than its configured noise: let the biases go.
+    state_ = before;
+    state_.P.diagonal().segment<3>(FilterState::kBa).array() += kAccelBiasJump * kAccelBiasJump;
+    state_.P.diagonal().segment<3>(FilterState::kBg).array() += kGyroBiasJump * kGyroBiasJump;
+    predict(report.pose_time, report);
+    clock.book(Stage::kPredict);
+    update = correct(clock);
   }
   describe(update, report);
   judge(update, report);

@@ -67,6 +67,8 @@ class MapFilter {
   void start(StepReport& report);
   void track(StageClock& clock, StepReport& report);
   bool predict(TimeNs to, StepReport& report);
+  UpdateResult correct(StageClock& clock);
+  bool surprised_by_imu(const FilterState& predicted) const;
   void judge(const UpdateResult& update, StepReport& report);
   void describe(const UpdateResult& update, StepReport& report) const;
   UpdateOptions options() const;
@@ -82,6 +84,7 @@ class MapFilter {
   std::uint64_t scan_number_ = 0;
   int confirmed_ = 0;  ///< scans in agreement since the start
   bool started_ = false;
+  TimeNs last_surprise_ = 0;  ///< when the IMU last disagreed with a scan beyond its covariance
 };
 
 }  // namespace holdfast::baselines
