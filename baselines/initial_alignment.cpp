@@ -179,7 +179,7 @@ std::vector<Candidate> ranked(const Search& search, const SelectedScan& few,
                               const FilterState& prior) {
   const double speed = search.uncertainty.speed_m_s;
   const std::array<Motion, 2> motions = {
-      {{false, std::min(1.5, speed), std::min(0.2, speed)}, {true, speed, std::min(1.0, speed)}}};
+      {{false, std::min(1.5, speed), std::min(0.1, speed)}, {true, speed, std::min(0.5, speed)}}};
   std::vector<Candidate> candidates;
   for (const Motion& motion : motions) {
     for (const FilterState& start : pattern(prior, few.imu, search.uncertainty, search.gravity)) {

@@ -14,6 +14,9 @@ constexpr int kScansToConfirm = 2;
 constexpr TimeNs kImuMemory = 2 * kSecond;
 constexpr double kAccelBiasJump = 0.3;  // m/s^2, what a bias may jump by
 constexpr double kGyroBiasJump = 0.03;  // rad/s
+constexpr double kStartSigmaM = 0.05;    // of the first scan's alignment, beyond its covariance
+constexpr double kStartSigmaRad = 0.005;
+constexpr double kStartSigmaMS = 0.5;
 
 /// Directions in which this scan alone determines the position worse than `sigma`, the rotation being
 /// free: eigenvectors of the Schur complement of the rotation.
@@ -114,6 +117,10 @@ void MapFilter::start(StepReport& report) {
   }
   state_ = aligned.state;
   state_.t = report.pose_time;
+  // A single scan whose own skew was estimated with it is not as good as its points are many.
+  state_.P.diagonal().segment<3>(FilterState::kP).array() += kStartSigmaM * kStartSigmaM;
+  state_.P.diagonal().segment<3>(FilterState::kR).array() += kStartSigmaRad * kStartSigmaRad;
+  state_.P.diagonal().segment<3>(FilterState::kV).array() += kStartSigmaMS * kStartSigmaMS;
   started_ = true;
   confirmed_ = 1;
   report.reason = "first scan aligned";

@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
 
 namespace holdfast::baselines {
 namespace {
@@ -20,6 +22,9 @@ constexpr double kRepairM = 0.02;
 constexpr double kRepairRad = 0.002;
 constexpr double kRedeskewM = 0.002;
 constexpr double kLeastWeight = 30.0;
+// The robust loss starts wide and narrows: far from the optimum its narrow form hardly feels the
+// pairs that are off, and takes many small steps.
+constexpr std::array<double, 3> kAnneal = {4.0, 2.0, 1.0};
 
 preprocess::EndState end_state(const FilterState& s, const Eigen::Vector3d& gravity) {
   const Eigen::Quaterniond R_body_map = s.T_map_body.rotation.conjugate();
@@ -123,8 +128,9 @@ class Iteration {
   /// One Gauss-Newton step; true when it was too small to matter.
   bool step(UpdateResult& result) {
     NormalEquations& e = result.equations;
-    e = registration::linearise(work_.pairs, anchored(state_, map_), options_.robust_scale, pool_,
-                                work_.partials);
+    const double anneal = kAnneal[std::min<std::size_t>(result.iterations, kAnneal.size() - 1)];
+    e = registration::linearise(work_.pairs, anchored(state_, map_),
+                                anneal * options_.robust_scale, pool_, work_.partials);
     result.usable = e.weight >= kLeastWeight;
     if (!result.usable) return false;
     NormalEquations softened = e;
@@ -142,7 +148,7 @@ class Iteration {
     const Vector15d delta = -A.ldlt().solve(b);
     state_.add(delta);
     book(Stage::kSolve);
-    return delta.segment<3>(kPosition).norm() < kConvergedM &&
+    return anneal == 1.0 && delta.segment<3>(kPosition).norm() < kConvergedM &&
            delta.segment<3>(kRotation).norm() < kConvergedRad;
   }
 
