@@ -6,7 +6,7 @@
 namespace holdfast::evaluation {
 namespace {
 
-constexpr double kOrientationLever_m = 0.01;
+constexpr double kOrientationLeverMetres = 0.01;
 
 Eigen::Vector3d mean_position(const std::vector<SE3>& poses) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -24,7 +24,8 @@ SE3 align_rigid(const std::vector<SE3>& estimate, const std::vector<SE3>& truth)
   for (std::size_t i = 0; i < estimate.size(); ++i) {
     moment +=
         (truth[i].translation - mean_truth) * (estimate[i].translation - mean_estimate).transpose();
-    moment += kOrientationLever_m * kOrientationLever_m * truth[i].rotation.toRotationMatrix() *
+    moment += kOrientationLeverMetres * kOrientationLeverMetres *
+              truth[i].rotation.toRotationMatrix() *
               estimate[i].rotation.toRotationMatrix().transpose();
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);

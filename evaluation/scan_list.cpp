@@ -9,7 +9,7 @@ namespace holdfast::evaluation {
 namespace {
 
 constexpr TimeNs kSameScan = kSecond / 1000;
-constexpr double kNominalPeriod_s = 0.1;
+constexpr double kNominalPeriodSeconds = 0.1;
 constexpr double kJitter = 0.05;  ///< of a period
 
 template <class Container, class TimeOf>
@@ -17,7 +17,7 @@ double median_period_s(const Container& items, const TimeOf& time_of) {
   std::vector<double> periods;
   for (std::size_t i = 1; i < items.size(); ++i)
     periods.push_back(to_seconds(time_of(items[i]) - time_of(items[i - 1])));
-  return periods.empty() ? kNominalPeriod_s : median(std::move(periods));
+  return periods.empty() ? kNominalPeriodSeconds : median(std::move(periods));
 }
 
 /// Claims are causal, so the first line of a stamp is the claim.

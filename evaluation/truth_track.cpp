@@ -8,10 +8,10 @@
 namespace holdfast::evaluation {
 namespace {
 
-constexpr double kLongestInterpolation_s = 0.25;
+constexpr double kLongestInterpolationSeconds = 0.25;
 /// Steps shorter than this are gathered before they count as way, so that the noise of a truth at
 /// rest does not add up.
-constexpr double kPathStep_m = 0.02;
+constexpr double kPathStepMetres = 0.02;
 
 double median_period_s(const Trajectory& poses) {
   std::vector<double> periods;
@@ -24,7 +24,7 @@ double median_period_s(const Trajectory& poses) {
 
 TruthTrack::TruthTrack(Trajectory poses, double max_gap_s)
     : poses_(std::move(poses)), period_s_(median_period_s(poses_)) {
-  const double slow_truth_s = std::min(1.5 * period_s_, kLongestInterpolation_s);
+  const double slow_truth_s = std::min(1.5 * period_s_, kLongestInterpolationSeconds);
   max_gap_ = from_seconds(std::max(max_gap_s, slow_truth_s));
   measure_path();
 }
@@ -45,7 +45,7 @@ void TruthTrack::measure_path() {
     if (broken) anchor = i;
     const double step =
         (poses_[i].T_map_body.translation - poses_[anchor].T_map_body.translation).norm();
-    if (step < kPathStep_m) continue;
+    if (step < kPathStepMetres) continue;
     path_m_[i] = path_m_[anchor] + step;
     anchor = i;
   }

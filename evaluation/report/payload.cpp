@@ -1,8 +1,9 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "evaluation/report/highlights.hpp"
 #include "evaluation/report/map_points.hpp"
@@ -49,7 +50,9 @@ Json figures_json(const ReportInput& input) {
 /// What became of a simulated event, in words.
 std::string outcome(const EventScore& score) {
   std::string text;
-  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  const auto add = [&](const std::string& part) {
+    text += text.empty() ? part : fmt::format(", {}", part);
+  };
   if (score.event.name == "kidnap")
     add(fmt::format("carried {} and {}", length_text(score.moved_m), angle_text(score.moved_deg)));
   if (score.noticed_after_s) add("noticed after " + seconds_text(*score.noticed_after_s));
@@ -58,24 +61,24 @@ std::string outcome(const EventScore& score) {
   return text;
 }
 
-/// "TRACKING to LOST: free space violated" from the keys that a run's events have.
+/// "TRACKING to LOST: free space violated, score 0.2" from the keys that a run's events have.
 std::string run_event_text(const Event& event) {
   std::string from;
   std::string to;
-  std::string rest;
+  std::vector<std::string> parts;
   for (const auto& [key, value] : event.details) {
-    if (key == "from")
+    if (value.empty()) continue;
+    if (key == "from") {
       from = value;
-    else if (key == "to")
+    } else if (key == "to") {
       to = value;
-    else if (key == "reason")
-      rest = value + rest;
-    else
-      rest += fmt::format("{}{} {}", rest.empty() ? "" : ", ", key, value);
+    } else {
+      parts.push_back(key == "reason" ? value : fmt::format("{} {}", key, value));
+    }
   }
-  std::string text = from.empty() || to.empty() ? from + to : from + " to " + to;
-  if (!text.empty() && !rest.empty()) text += ": ";
-  return text + rest;
+  const std::string change = from.empty() || to.empty() ? from + to : from + " to " + to;
+  const std::string rest = fmt::format("{}", fmt::join(parts, ", "));
+  return change.empty() || rest.empty() ? change + rest : fmt::format("{}: {}", change, rest);
 }
 
 std::string score_text(const ReportInput& input, const Event& event) {

@@ -206,6 +206,20 @@ TEST(Report, IsTheSameBytesTwice) {
   EXPECT_EQ(once, written_report(run, judged_by(run)));
 }
 
+TEST(Report, TellsWhatARunReportedInWords) {
+  const RunFolder run;
+  put_run(run);
+  run.put("events.jsonl",
+          "{\"t\":1,\"event\":\"status\",\"from\":\"\",\"to\":\"TRACKING\",\"reason\":\"\"}\n"
+          "{\"t\":2,\"event\":\"status\",\"from\":\"TRACKING\",\"to\":\"LOST\",\"p\":0.9,"
+          "\"reason\":\"glass\"}\n"
+          "{\"t\":3,\"event\":\"alarm\",\"reason\":\"a < b\"}\n");
+  const json events = payload_of(written_report(run)).at("events");
+  EXPECT_EQ(events[0].at("text"), "TRACKING");
+  EXPECT_EQ(events[1].at("text"), "TRACKING to LOST: p 0.9, glass");
+  EXPECT_EQ(events[2].at("text"), "a < b");
+}
+
 TEST(Report, TruthIsBrokenAtATeleport) {
   const RunFolder run;
   put_run(run);
