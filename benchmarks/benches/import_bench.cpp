@@ -97,14 +97,10 @@ struct Outcome {
   std::vector<double> import_wall_s, import_cpu_s, import_rss_mb;
   ordered_json import;  ///< of the last import
   ChildOutcome localization;
-  double program_rss_mb = 0;
 };
 
 Result<Outcome> measure_all(const BenchOptions& options, const Files& files) {
   Outcome outcome;
-  const auto nothing = run_in_child([] { return Result<ordered_json>(ordered_json::object()); });
-  if (!nothing) return nothing.error();
-  outcome.program_rss_mb = nothing->peak_rss_mb;
   options.progress(0.0, "surveying the town");
   const DriveSpec spec{"warehouse", options.seeds.first, options.duration_s, options.threads};
   const auto prepared = run_in_child([&] { return prepare(spec, files); });
@@ -130,7 +126,6 @@ double largest(const std::vector<double>& values) { return evaluation::quantile(
 
 ordered_json json_of(const Outcome& o) {
   ordered_json j;
-  j["program_rss_mb"] = o.program_rss_mb;
   j["import"]["points"] = o.import["points"];
   j["import"]["tiles"] = o.import["tiles"];
   j["import"]["surfaces_mb"] = o.import["surfaces_mb"];
@@ -158,7 +153,6 @@ std::string markdown_of(const Outcome& o, const BenchOptions& options) {
   table.add_row({fmt::format("localization of {} scans in it, reading of the bag included",
                              run["scans"].get<std::size_t>()),
                  "-", seconds_text(o.localization.cpu_s), memory_text(o.localization.peak_rss_mb)});
-  table.add_row({"the program before it does anything", "-", "-", memory_text(o.program_rss_mb)});
   const auto rmse = run["ate_rmse_m"];
   return table.markdown() +
          fmt::format("\nThe cloud: a simulated warehouse, with corridors, offices and halls beside "

@@ -10,7 +10,7 @@ namespace holdfast::benchmarks {
 namespace {
 
 constexpr std::size_t kNeighbours = 5;
-constexpr std::size_t kLeafSize = 10;
+constexpr std::size_t kLeafSize = 16;  // the fastest of 5, 10, 16 and 25
 
 struct PointSet {
   const std::vector<Eigen::Vector3f>& points;

@@ -1,0 +1,126 @@
+#include "benchmarks/bench.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/scratch_folder.hpp"
+
+namespace holdfast::benchmarks {
+namespace {
+
+TEST(Seeds, AreReadWithBothEndsIncluded) {
+  const auto seeds = parse_seeds("3:12");
+  ASSERT_TRUE(seeds) << seeds.error().message;
+  EXPECT_EQ(seeds->first, 3U);
+  EXPECT_EQ(seeds->last, 12U);
+  EXPECT_EQ(seeds->count(), 10U);
+  EXPECT_EQ(parse_seeds("7")->count(), 1U);
+}
+
+TEST(Seeds, OfAnotherFormAreRefusedWithTheFormExpected) {
+  for (const char* text : {"", ":", "1:", ":2", "a:b", "1:2:3", "-1:2", "2:1", "1:2000", "1 :2"}) {
+    const auto seeds = parse_seeds(text);
+    ASSERT_FALSE(seeds) << text;
+    EXPECT_NE(seeds.error().message.find("expected A"), std::string::npos);
+  }
+}
+
+TEST(Benches, AreFoundByNameAndListedOtherwise) {
+  ASSERT_TRUE(find_bench("accuracy"));
+  EXPECT_EQ((*find_bench("accuracy"))->seeds.count(), 10U);
+  const auto unknown = find_bench("acuracy");
+  ASSERT_FALSE(unknown);
+  for (const BenchInfo& info : benches()) {
+    EXPECT_NE(unknown.error().message.find(info.name), std::string::npos);
+  }
+}
+
+TEST(Figures, OfADistributionAreItsQuantiles) {
+  std::vector<double> values;
+  for (int i = 100; i >= 0; --i) values.push_back(i);
+  const Distribution d = distribution_of(values);
+  EXPECT_EQ(d.p50, 50);
+  EXPECT_EQ(d.p95, 95);
+  EXPECT_EQ(d.p99, 99);
+  EXPECT_EQ(d.max, 100);
+  EXPECT_TRUE(json_of(distribution_of({}))["p50"].is_null());
+}
+
+TEST(Figures, ThatAreNotKnownAreNull) {
+  EXPECT_TRUE(known(std::numeric_limits<double>::infinity()).is_null());
+  EXPECT_TRUE(known(std::numeric_limits<double>::quiet_NaN()).is_null());
+  EXPECT_EQ(known(0.25).get<double>(), 0.25);
+  EXPECT_EQ(ratio_text(11.74), "11.7 x");
+  EXPECT_EQ(ratio_text(std::numeric_limits<double>::quiet_NaN()), "-");
+}
+
+TEST(ScratchFolder, IsGoneWithAllItHeldWhenItsOwnerIs) {
+  std::filesystem::path path;
+  {
+    auto scratch = ScratchFolder::create();
+    ASSERT_TRUE(scratch) << scratch.error().message;
+    const ScratchFolder moved = std::move(*scratch);
+    path = moved.path();
+    std::ofstream(moved / "file") << "content";
+    EXPECT_TRUE(std::filesystem::exists(moved / "file"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST(Report, SaysHowItCameAboutAndLiesInTwoFiles) {
+  auto scratch = ScratchFolder::create();
+  ASSERT_TRUE(scratch) << scratch.error().message;
+  const BenchInfo info{"probe", "a bench for this test", {1, 1}, 1,
+                       [](const BenchOptions& options) -> Result<BenchReport> {
+                         BenchReport report;
+                         report.data["results"] = {{"answer", options.duration_s}};
+                         report.markdown = "| answer |\n";
+                         return report;
+                       }};
+  BenchOptions options;
+  options.seeds = {4, 6};
+  options.duration_s = 42;
+  const auto report = run_bench(info, options);
+  ASSERT_TRUE(report) << report.error().message;
+  ASSERT_TRUE(write_report(info, *report, *scratch / "out"));
+  std::ifstream file(*scratch / "out" / "probe.json");
+  const auto json = nlohmann::json::parse(file);
+  EXPECT_EQ(json["results"]["answer"], 42);
+  EXPECT_EQ(json["seeds"], nlohmann::json({4, 6}));
+  EXPECT_EQ(json["command"],
+            "holdfast bench probe --out DIR --seeds 4:6 --duration 42 --threads 1");
+  EXPECT_FALSE(json["cpu"].get<std::string>().empty());
+  std::ifstream table(*scratch / "out" / "probe.md");
+  const std::string text{std::istreambuf_iterator<char>(table), {}};
+  EXPECT_NE(text.find("| answer |"), std::string::npos);
+  EXPECT_NE(text.find("--seeds 4:6"), std::string::npos);
+}
+
+TEST(Report, OfAFailedBenchIsItsError) {
+  const BenchInfo info{"probe", "", {1, 1}, 1, [](const BenchOptions&) -> Result<BenchReport> {
+                         return Error{"no world to measure in"};
+                       }};
+  const auto report = run_bench(info, {});
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().message, "no world to measure in");
+}
+
+TEST(SimulatorBench, KeepsItsKeys) {
+  BenchOptions options;
+  options.duration_s = 0.5;
+  const auto report = run_bench(**find_bench("simulator"), options);
+  ASSERT_TRUE(report) << report.error().message;
+  ASSERT_EQ(report->data["results"].size(), 5U);
+  for (const auto& result : report->data["results"]) {
+    for (const char* kind : {"in_process", "to_bag", "in_process_1_thread"}) {
+      EXPECT_GT(result[kind]["realtime_factor"].get<double>(), 0) << result["scenario"];
+      EXPECT_NEAR(result[kind]["simulated_s"].get<double>(), 0.5, 0.1) << result["scenario"];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace holdfast::benchmarks

@@ -1,0 +1,38 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/interface/program.hpp"
+
+namespace holdfast::testing {
+namespace {
+
+std::string scratch() {
+  return (std::filesystem::temp_directory_path() / "holdfast_bench_command_test").string();
+}
+
+TEST(BenchCommand, WritesTheTableThatItPrints) {
+  const auto run = run_program("bench simulator --duration 1 --threads 1 --out " + scratch());
+  EXPECT_EQ(run.exit_code, 0) << run.out;
+  EXPECT_NE(run.out.find("| corridor "), std::string::npos) << run.out;
+  EXPECT_TRUE(std::filesystem::exists(scratch() + "/simulator.json"));
+  EXPECT_TRUE(std::filesystem::exists(scratch() + "/simulator.md"));
+  std::filesystem::remove_all(scratch());
+}
+
+TEST(BenchCommand, NamesTheBenchesWhenAskedForAnotherOne) {
+  const auto run = run_program("bench speed --out " + scratch());
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.out.find("step, accuracy, import, simulator"), std::string::npos) << run.out;
+  EXPECT_FALSE(std::filesystem::exists(scratch()));
+}
+
+TEST(BenchCommand, RefusesSeedsOfAnotherForm) {
+  const auto run = run_program("bench step --seeds ten --out " + scratch());
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.out.find("'ten'"), std::string::npos) << run.out;
+}
+
+}  // namespace
+}  // namespace holdfast::testing
