@@ -22,8 +22,8 @@ struct BenchArguments {
 void bench(const BenchArguments& args) {
   const auto& info = *value_or_fail(benchmarks::find_bench(args.name), 2);
   benchmarks::BenchOptions options;
-  options.seeds = args.seeds.empty() ? info.seeds
-                                     : value_or_fail(benchmarks::parse_seeds(args.seeds), 2);
+  options.seeds =
+      args.seeds.empty() ? info.seeds : value_or_fail(benchmarks::parse_seeds(args.seeds), 2);
   options.duration_s = args.duration_s.value_or(info.duration_s);
   options.threads = args.threads;
   benchmarks::BenchReport report;
@@ -48,14 +48,16 @@ std::string list_of_benches() {
 }  // namespace
 
 void add_bench_command(CLI::App& app) {
-  auto* command = app.add_subcommand("bench", "Measure speed, accuracy and memory on simulated drives");
+  auto* command =
+      app.add_subcommand("bench", "Measure speed, accuracy and memory on simulated drives");
   auto args = std::make_shared<BenchArguments>();
   command->add_option("NAME", args->name, "what to measure (see below)")->required();
   command->add_option("--out", args->out, "folder for NAME.json and NAME.md")
       ->type_name("DIR")
       ->required();
   command
-      ->add_option("--seeds", args->seeds, "drives to take, both ends included (each has a default)")
+      ->add_option("--seeds", args->seeds,
+                   "drives to take, both ends included (each has a default)")
       ->type_name("A:B");
   command->add_option("--duration", args->duration_s, "seconds of each drive")
       ->check(CLI::Range(1.0, 10000.0))

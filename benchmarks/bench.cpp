@@ -14,13 +14,18 @@ namespace holdfast::benchmarks {
 namespace {
 
 constexpr std::array<BenchInfo, 4> kBenches = {{
-    {"step", "time of a step, beside a k-d-tree registration and plain reading of the log",
-     {1, 1}, 20, measure_step},
+    {"step",
+     "time of a step, beside a k-d-tree registration and plain reading of the log",
+     {1, 1},
+     20,
+     measure_step},
     {"accuracy", "errors over worlds and seeds in surveyed maps", {1, 10}, 60, measure_accuracy},
-    {"import", "time and memory of making and using a map of 2 million points", {1, 1}, 20,
+    {"import",
+     "time and memory of making and using a map of 2 million points",
+     {1, 1},
+     20,
      measure_import},
-    {"simulator", "speed of the simulator, in process and to a bag", {1, 1}, 20,
-     measure_simulator},
+    {"simulator", "speed of the simulator, in process and to a bag", {1, 1}, 20, measure_simulator},
 }};
 
 constexpr std::uint64_t kMostSeeds = 1000;
@@ -83,9 +88,9 @@ Result<SeedRange> parse_seeds(const std::string& text) {
   const auto colon = text.find(':');
   const std::string_view whole = text;
   SeedRange seeds;
-  const bool read = parse_number(whole.substr(0, colon), seeds.first) &&
-                    parse_number(whole.substr(colon == std::string::npos ? 0 : colon + 1),
-                                 seeds.last);
+  const bool read =
+      parse_number(whole.substr(0, colon), seeds.first) &&
+      parse_number(whole.substr(colon == std::string::npos ? 0 : colon + 1), seeds.last);
   if (!read) return Error{fmt::format("seeds '{}': expected A:B, as in 1:10", text)};
   if (seeds.last < seeds.first || seeds.last - seeds.first >= kMostSeeds) {
     return Error{fmt::format("seeds '{}': expected A <= B and at most {} seeds", text, kMostSeeds)};
@@ -99,8 +104,8 @@ Result<BenchReport> run_bench(const BenchInfo& bench, const BenchOptions& option
   auto data = origin_of(bench, options);
   data.update(report->data);
   report->data = std::move(data);
-  report->markdown +=
-      fmt::format("\n`{}`, {}\n", command_of(bench, options), report->data["cpu"].get<std::string>());
+  report->markdown += fmt::format("\n`{}`, {}\n", command_of(bench, options),
+                                  report->data["cpu"].get<std::string>());
   return report;
 }
 

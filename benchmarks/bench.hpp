@@ -34,8 +34,8 @@ struct BenchOptions {
   Progress progress = [](double, const std::string&) {};
 };
 
-/// What a bench found: `data` for machines, with stable keys (lengths in metres, times with the unit
-/// in the key, null where nothing is known), `markdown` for people.
+/// What a bench found: `data` for machines, with stable keys (lengths in metres, times with the
+/// unit in the key, null where nothing is known), `markdown` for people.
 struct BenchReport {
   nlohmann::ordered_json data;
   std::string markdown;
@@ -56,8 +56,9 @@ std::span<const BenchInfo> benches();
 /// The bench of that name. The error lists the known names.
 Result<const BenchInfo*> find_bench(std::string_view name);
 
-/// Measures, and adds to the result how it came about: command, seeds, CPU, compiler. Figures of time
-/// are those of this machine at this moment; the errors of trajectories are the same on each run.
+/// Measures, and adds to the result how it came about: command, seeds, CPU, compiler. Figures of
+/// time are those of this machine at this moment; the errors of trajectories are the same on each
+/// run.
 Result<BenchReport> run_bench(const BenchInfo& bench, const BenchOptions& options);
 
 /// Writes DIR/NAME.json and DIR/NAME.md; makes DIR.

@@ -141,12 +141,11 @@ nlohmann::ordered_json json_of(const Summary& s) {
 
 void add_row(const char* scenario, const Summary& s, Table& table) {
   using namespace evaluation;
-  table.add_row({scenario, count_text(static_cast<double>(s.rmse_m.size())),
-                 length_text(median(s.rmse_m)), length_text(most(s.rmse_m)),
-                 length_text(most(s.max_m)), share_text(least(s.coverage)),
-                 share_text(least(s.trusted)), count_text(static_cast<double>(s.misleading)),
-                 count_text(static_cast<double>(s.failed)),
-                 milliseconds_text(median(s.step_p50_ms))});
+  table.add_row(
+      {scenario, count_text(static_cast<double>(s.rmse_m.size())), length_text(median(s.rmse_m)),
+       length_text(most(s.rmse_m)), length_text(most(s.max_m)), share_text(least(s.coverage)),
+       share_text(least(s.trusted)), count_text(static_cast<double>(s.misleading)),
+       count_text(static_cast<double>(s.failed)), milliseconds_text(median(s.step_p50_ms))});
 }
 
 }  // namespace
@@ -172,7 +171,8 @@ Result<BenchReport> measure_accuracy(const BenchOptions& options) {
     add_row(scenario, summary, table);
   }
   report.markdown = table.markdown();
-  report.markdown += "\nWithout alignment; each drive in a survey of its own. Step: thread CPU time.\n";
+  report.markdown +=
+      "\nWithout alignment; each drive in a survey of its own. Step: thread CPU time.\n";
   return report;
 }
 

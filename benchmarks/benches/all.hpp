@@ -6,13 +6,13 @@
 namespace holdfast::benchmarks {
 
 /// Step time of map_filter in the corridor, the office and the hall (16 x 1800 LiDAR), beside two
-/// yardsticks on the same scans in the same run: a k-d-tree registration with fits at query time from
-/// the same predicted poses, and plain reading of the log. All three on one thread, as thread CPU
-/// time; `threads` serves the simulation only.
+/// yardsticks on the same scans in the same run: a k-d-tree registration with fits at query time
+/// from the same predicted poses, and plain reading of the log. All three on one thread, as thread
+/// CPU time; `threads` serves the simulation only.
 Result<BenchReport> measure_step(const BenchOptions& options);
 
-/// Errors of the localizer over worlds and seeds; each drive in its own survey of its world. `threads`
-/// drives run at a time, each on one thread.
+/// Errors of the localizer over worlds and seeds; each drive in its own survey of its world.
+/// `threads` drives run at a time, each on one thread.
 Result<BenchReport> measure_accuracy(const BenchOptions& options);
 
 /// Making a map of 2 million points and localizing in it, each in a process of its own, so that the

@@ -44,10 +44,9 @@ class Repeater {
   void deskew(const Scan& scan, const FilterState& state, registration::BodyPoints& out) {
     const Eigen::Quaterniond R_body_map = state.T_map_body.rotation.conjugate();
     filter_.imu().segment(scan.stamp, scan.end_time, imu_);
-    motion_.set(imu_,
-                {R_body_map * state.v_map, R_body_map * gravity_, state.gyro_bias,
-                 state.accel_bias},
-                setup_.T_body_lidar, scan.stamp, scan.end_time);
+    motion_.set(
+        imu_, {R_body_map * state.v_map, R_body_map * gravity_, state.gyro_bias, state.accel_bias},
+        setup_.T_body_lidar, scan.stamp, scan.end_time);
     out.resize(selected_.size());
     for (std::size_t i = 0; i < selected_.size(); ++i) {
       const ScanPoint& p = scan.points[selected_[i]];

@@ -31,8 +31,11 @@ struct Files {
   std::filesystem::path cloud, bag, config, truth, map;
 
   explicit Files(const ScratchFolder& scratch)
-      : cloud(scratch / "town.pcd"), bag(scratch / "run.bag"), config(scratch / "config.yaml"),
-        truth(scratch / "truth.tum"), map(scratch / "map") {}
+      : cloud(scratch / "town.pcd"),
+        bag(scratch / "run.bag"),
+        config(scratch / "config.yaml"),
+        truth(scratch / "truth.tum"),
+        map(scratch / "map") {}
 };
 
 /// Writes the town, and a drive through its warehouse.
@@ -60,8 +63,7 @@ Result<ordered_json> import(const Files& files, int threads) {
   if (!cloud) return cloud.error();
   const double read = wall_ms();
   WorkerPool pool(threads);
-  const auto info =
-      map::build_map({std::move(*cloud), std::nullopt, "town.pcd"}, files.map, pool);
+  const auto info = map::build_map({std::move(*cloud), std::nullopt, "town.pcd"}, files.map, pool);
   if (!info) return info.error();
   std::uint64_t bytes = 0;
   for (const map::TileInfo& tile : info->tiles) bytes += tile.bytes;
@@ -145,21 +147,22 @@ std::string markdown_of(const Outcome& o, const BenchOptions& options) {
   using namespace evaluation;
   const ordered_json& run = o.localization.answer;
   Table table({"what", "wall time", "CPU time", "peak memory"});
-  table.add_row({fmt::format("import of {} points, {} threads (median of {}; memory: worst)",
-                             count_text(o.import["points"].get<double>()), options.threads,
-                             kImports),
-                 seconds_text(median(o.import_wall_s)), seconds_text(median(o.import_cpu_s)),
-                 memory_text(largest(o.import_rss_mb))});
+  table.add_row(
+      {fmt::format("import of {} points, {} threads (median of {}; memory: worst)",
+                   count_text(o.import["points"].get<double>()), options.threads, kImports),
+       seconds_text(median(o.import_wall_s)), seconds_text(median(o.import_cpu_s)),
+       memory_text(largest(o.import_rss_mb))});
   table.add_row({fmt::format("localization of {} scans in it, reading of the bag included",
                              run["scans"].get<std::size_t>()),
                  "-", seconds_text(o.localization.cpu_s), memory_text(o.localization.peak_rss_mb)});
   const auto rmse = run["ate_rmse_m"];
   return table.markdown() +
-         fmt::format("\nThe cloud: a simulated warehouse, with corridors, offices and halls beside "
-                     "it until there are 2 million points, about 6 cm apart. Import reads the PCD "
-                     "file and writes the map. The drive goes through the warehouse (ATE RMSE {}). "
-                     "Memory: largest resident set, mapped files included.\n",
-                     length_text(rmse.is_null() ? kNotKnown : rmse.get<double>()));
+         fmt::format(
+             "\nThe cloud: a simulated warehouse, with corridors, offices and halls beside "
+             "it until there are 2 million points, about 6 cm apart. Import reads the PCD "
+             "file and writes the map. The drive goes through the warehouse (ATE RMSE {}). "
+             "Memory: largest resident set, mapped files included.\n",
+             length_text(rmse.is_null() ? kNotKnown : rmse.get<double>()));
 }
 
 }  // namespace

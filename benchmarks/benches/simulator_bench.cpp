@@ -82,8 +82,8 @@ nlohmann::ordered_json json_of(const Speed& speed) {
 Result<BenchReport> measure_simulator(const BenchOptions& options) {
   BenchReport report;
   const std::string threads = fmt::format("{} threads", options.threads);
-  Table table({"scenario", "in process, " + threads, "to a bag, " + threads,
-               "in process, 1 thread", "by CPU time, 1 thread"});
+  Table table({"scenario", "in process, " + threads, "to a bag, " + threads, "in process, 1 thread",
+               "by CPU time, 1 thread"});
   double done = 0;
   for (const char* scenario : kScenarios) {
     Speeds speeds;
@@ -104,7 +104,8 @@ Result<BenchReport> measure_simulator(const BenchOptions& options) {
   }
   report.markdown = table.markdown();
   report.markdown +=
-      "\nTimes real time, by the wall clock and (last column) by the CPU time of all threads, for a "
+      "\nTimes real time, by the wall clock and (last column) by the CPU time of all threads, for "
+      "a "
       "16 x 1800 LiDAR at 10 Hz and an IMU at 200 Hz.\n";
   return report;
 }

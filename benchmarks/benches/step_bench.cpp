@@ -156,10 +156,12 @@ void add_shares(const char* scenario, const StepFigures& f, Table& table) {
 
 constexpr const char* kTimesNote =
     "Thread CPU time. A step is all of map_filter's work on one scan; the k-d tree's time is its "
-    "registration alone, given the prediction and the deskewed points; reading is the decoding of a "
+    "registration alone, given the prediction and the deskewed points; reading is the decoding of "
+    "a "
     "scan and of the IMU readings before it from a bag.\n";
 constexpr const char* kSharesNote =
-    "Shares of the step by stage; scans in TRACKING or DEGRADED; position errors of both from the same "
+    "Shares of the step by stage; scans in TRACKING or DEGRADED; position errors of both from the "
+    "same "
     "predictions; how often a scan's neighbours were searched.\n";
 
 }  // namespace
@@ -181,8 +183,8 @@ Result<BenchReport> measure_step(const BenchOptions& options) {
     add_times(scenario, figures, times);
     add_shares(scenario, figures, shares);
   }
-  report.markdown = fmt::format("{}\n{}\n{}\n{}", times.markdown(), kTimesNote, shares.markdown(),
-                                kSharesNote);
+  report.markdown =
+      fmt::format("{}\n{}\n{}\n{}", times.markdown(), kTimesNote, shares.markdown(), kSharesNote);
   return report;
 }
 

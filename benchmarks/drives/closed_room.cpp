@@ -53,9 +53,8 @@ registration::BodyPoints ClosedRoom::scan(const SE3& T_map_body, int beams, int 
   registration::BodyPoints points;
   for (int column = 0; column < columns; ++column) {
     for (int beam = 0; beam < beams; ++beam) {
-      const Eigen::Vector3d ray =
-          direction(std::numbers::pi / 3 * ((beam + 0.5) / beams - 0.5),
-                    2 * std::numbers::pi * column / columns);
+      const Eigen::Vector3d ray = direction(std::numbers::pi / 3 * ((beam + 0.5) / beams - 0.5),
+                                            2 * std::numbers::pi * column / columns);
       const Eigen::Vector3d d = T_map_body.rotation * ray;
       const double range = distance(half_size, T_map_body.translation, d);
       if (near_edge(half_size, T_map_body.translation + range * d, margin_m)) continue;

@@ -14,9 +14,9 @@ struct ClosedRoom {
   /// Points of its six sides, `spacing_m` apart, without noise.
   std::vector<Eigen::Vector3f> surface(double spacing_m) const;
 
-  /// What a LiDAR at `T_map_body` sees on the sides: `beams` x `columns` rays in a field of view of 60
-  /// degrees, without noise and motion, in the body frame. Points nearer than `margin_m` to an edge
-  /// are left out.
+  /// What a LiDAR at `T_map_body` sees on the sides: `beams` x `columns` rays in a field of view of
+  /// 60 degrees, without noise and motion, in the body frame. Points nearer than `margin_m` to an
+  /// edge are left out.
   registration::BodyPoints scan(const SE3& T_map_body, int beams, int columns,
                                 double margin_m) const;
 };

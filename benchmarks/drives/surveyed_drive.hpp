@@ -17,8 +17,8 @@ struct DriveSpec {
   int threads = 1;  ///< for casting rays and fitting surfaces; the drive does not depend on it
 };
 
-/// A simulated drive that has not begun, and all that `holdfast localize` would be given: the map of
-/// its own survey and the configuration that `holdfast simulate` writes.
+/// A simulated drive that has not begun, and all that `holdfast localize` would be given: the map
+/// of its own survey and the configuration that `holdfast simulate` writes.
 struct SurveyedDrive {
   std::unique_ptr<simulation::Simulation> simulation;
   pipeline::Config config;

@@ -21,8 +21,8 @@ double seconds(const timeval& t) {
 
 /// The child's side: one JSON object {"answer": ...} or {"error": ...} into the pipe, then the end,
 /// without the caller's destructors and buffers.
-[[noreturn]] void answer_and_end(
-    int pipe, const std::function<Result<nlohmann::ordered_json>()>& work) {
+[[noreturn]] void answer_and_end(int pipe,
+                                 const std::function<Result<nlohmann::ordered_json>()>& work) {
   nlohmann::ordered_json message;
   try {
     auto answer = work();
@@ -61,8 +61,8 @@ Result<ChildOutcome> outcome_of(const std::string& text, int status, const rusag
   }
   auto message = nlohmann::ordered_json::parse(text, nullptr, false);
   if (message.is_discarded() || !message.is_object()) {
-    return Error{fmt::format("the measuring process ended with code {} and no answer",
-                             WEXITSTATUS(status))};
+    return Error{
+        fmt::format("the measuring process ended with code {} and no answer", WEXITSTATUS(status))};
   }
   if (message.contains("error")) return Error{message["error"].get<std::string>()};
   return ChildOutcome{message["answer"], static_cast<double>(usage.ru_maxrss) / 1024.0,

@@ -14,7 +14,8 @@ Distribution distribution_of(const std::vector<double>& values) {
 }
 
 nlohmann::ordered_json json_of(const Distribution& d) {
-  return {{"p50", known(d.p50)}, {"p95", known(d.p95)}, {"p99", known(d.p99)}, {"max", known(d.max)}};
+  return {
+      {"p50", known(d.p50)}, {"p95", known(d.p95)}, {"p99", known(d.p99)}, {"max", known(d.max)}};
 }
 
 std::string ratio_text(double ratio) {

@@ -14,8 +14,8 @@ Result<ScratchFolder> ScratchFolder::create() {
   if (failure) return Error{fmt::format("no folder for temporary files: {}", failure.message())};
   std::string name = (root / "holdfast-bench-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) {
-    return Error{fmt::format("{}: cannot make a temporary folder: {}", root.string(),
-                             std::strerror(errno))};
+    return Error{
+        fmt::format("{}: cannot make a temporary folder: {}", root.string(), std::strerror(errno))};
   }
   return ScratchFolder(name);
 }

@@ -36,9 +36,7 @@ struct Scene {
 
   Scene() : map(make_map()) { value_or_end(map.focus(T_map_body.translation, 50.0)); }
 
-  SE3 T_anchor_body() const {
-    return {T_map_body.rotation, T_map_body.translation - map.anchor()};
-  }
+  SE3 T_anchor_body() const { return {T_map_body.rotation, T_map_body.translation - map.anchor()}; }
 
   static Scene& get() {
     static Scene scene;  // made once, when the first benchmark asks
@@ -57,9 +55,9 @@ struct Scene {
 
 /// Reports the time of one item beside that of the whole.
 void per_item(benchmark::State& state, std::size_t items, const char* name) {
-  state.counters[name] = benchmark::Counter(static_cast<double>(items),
-                                            benchmark::Counter::kIsIterationInvariantRate |
-                                                benchmark::Counter::kInvert);
+  state.counters[name] =
+      benchmark::Counter(static_cast<double>(items), benchmark::Counter::kIsIterationInvariantRate |
+                                                         benchmark::Counter::kInvert);
 }
 
 void map_lookup(benchmark::State& state) {

@@ -61,7 +61,8 @@ struct KdTreeRegistration::Tree {
 
 KdTreeRegistration::KdTreeRegistration(std::vector<Eigen::Vector3f> points,
                                        const KdTreeOptions& options)
-    : options_(options), points_(in_order_of_leaves(points)),
+    : options_(options),
+      points_(in_order_of_leaves(points)),
       tree_(std::make_unique<Tree>(points_)) {}
 
 KdTreeRegistration::~KdTreeRegistration() = default;
@@ -109,8 +110,8 @@ void KdTreeRegistration::pair(const registration::BodyPoints& points, const SE3&
     pairs_.pz[i] = q.z();
     pairs_.age_s[i] = points.age_s[i];
     Plane plane;
-    const bool paired = find_plane(p, plane) &&
-                        std::abs(plane.normal.dot(p - plane.center)) < options_.gate_m;
+    const bool paired =
+        find_plane(p, plane) && std::abs(plane.normal.dot(p - plane.center)) < options_.gate_m;
     if (!paired) {
       pairs_.nx[i] = pairs_.ny[i] = pairs_.nz[i] = pairs_.offset[i] = pairs_.information[i] = 0;
       continue;

@@ -40,14 +40,15 @@ struct Registration {
 
 /// The yardstick of the literature: a scan is registered to the points of the map, with the five
 /// nearest neighbours of each point from a k-d tree (nanoflann), a plane fitted to them by their
-/// principal axes at query time, and Gauss-Newton on point-to-plane distances. Weights, robust loss,
-/// stopping rule, number of points and the prior are those of map_filter, so that what differs is how
-/// a plane is found. The tree is built once, over points in the order of its leaves; a query allocates
-/// nothing. Single thread.
+/// principal axes at query time, and Gauss-Newton on point-to-plane distances. Weights, robust
+/// loss, stopping rule, number of points and the prior are those of map_filter, so that what
+/// differs is how a plane is found. The tree is built once, over points in the order of its leaves;
+/// a query allocates nothing. Single thread.
 class KdTreeRegistration {
  public:
   /// `points` in the map frame, metres.
-  explicit KdTreeRegistration(std::vector<Eigen::Vector3f> points, const KdTreeOptions& options = {});
+  explicit KdTreeRegistration(std::vector<Eigen::Vector3f> points,
+                              const KdTreeOptions& options = {});
   ~KdTreeRegistration();
   KdTreeRegistration(const KdTreeRegistration&) = delete;
   KdTreeRegistration& operator=(const KdTreeRegistration&) = delete;

@@ -73,7 +73,10 @@ TEST(ScratchFolder, IsGoneWithAllItHeldWhenItsOwnerIs) {
 TEST(Report, SaysHowItCameAboutAndLiesInTwoFiles) {
   auto scratch = ScratchFolder::create();
   ASSERT_TRUE(scratch) << scratch.error().message;
-  const BenchInfo info{"probe", "a bench for this test", {1, 1}, 1,
+  const BenchInfo info{"probe",
+                       "a bench for this test",
+                       {1, 1},
+                       1,
                        [](const BenchOptions& options) -> Result<BenchReport> {
                          BenchReport report;
                          report.data["results"] = {{"answer", options.duration_s}};

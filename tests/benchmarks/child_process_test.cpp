@@ -31,8 +31,8 @@ TEST(ChildProcess, HandsErrorsAndExceptionsBack) {
   const auto refused = run_in_child([]() -> Result<ordered_json> { return Error{"no map"}; });
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message, "no map");
-  const auto thrown = run_in_child(
-      []() -> Result<ordered_json> { throw std::runtime_error("out of luck"); });
+  const auto thrown =
+      run_in_child([]() -> Result<ordered_json> { throw std::runtime_error("out of luck"); });
   ASSERT_FALSE(thrown);
   EXPECT_EQ(thrown.error().message, "out of luck");
 }

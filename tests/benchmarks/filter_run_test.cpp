@@ -73,8 +73,8 @@ TEST_F(RecordedDrive, IsRegisteredAgainByTheKdTreeFromTheSamePredictions) {
   KdTreeRegistration tree(drive_.simulation->survey_map().points);
   for (std::size_t i = 1; i < scans->size(); ++i) {
     const FilteredScan& scan = (*scans)[i];
-    const Registration found = tree.align(
-        scan.points, drive_.config.T_body_lidar.translation, scan.predicted);
+    const Registration found =
+        tree.align(scan.points, drive_.config.T_body_lidar.translation, scan.predicted);
     const SE3 truth = drive_.simulation->truth_at(scan.report.pose_time);
     EXPECT_LT((found.T_map_body.translation - truth.translation).norm(), 0.02) << "scan " << i;
     EXPECT_GT(found.pairs, 0.8 * static_cast<double>(scan.points.size())) << "scan " << i;

@@ -9,7 +9,8 @@ namespace holdfast::benchmarks {
 namespace {
 
 constexpr double kSpacingM = 0.08;
-/// Farther from any edge than a start is off, and than five neighbours reach: every fit is one side.
+/// Farther from any edge than a start is off, and than five neighbours reach: every fit is one
+/// side.
 constexpr double kMarginM = 0.6;
 
 const SE3 kTruth{so3::exp({0.02, -0.03, 0.5}), {1.2, -0.7, -0.4}};
@@ -51,7 +52,8 @@ TEST(KdTreeRegistration, FindsThePoseInARoomFromAnOffsetStart) {
       return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
     };
     const Registration found = align(points, {off_by(0.1 * axis(), 0.01 * axis())});
-    // It stops when a step is below these, and Gauss-Newton's last step is longer than what is left.
+    // It stops when a step is below these, and Gauss-Newton's last step is longer than what is
+    // left.
     expect_at_truth(found.T_map_body, options.converged_m, options.converged_rad);
     EXPECT_GE(found.searches, 2);
     EXPECT_LE(found.iterations, options.max_iterations);
