@@ -107,6 +107,7 @@ pipeline::RunSummary::About about_run(const Arguments& args, const pipeline::Con
 void write_report(const Arguments& args, const std::filesystem::path& run_dir) {
   if (args.no_report) return;
   evaluation::ReportOptions options;
+  options.title = std::filesystem::path(args.out).filename().string();
   options.truth = args.truth;
   options.events = args.events;
   value_or_fail(evaluation::write_report(run_dir, options));

@@ -15,14 +15,14 @@ struct DescentStage {
   int iterations;
 };
 
-/// What is assumed of the velocity: a slow robot's scan is hardly skewed, and the coarse stages only
-/// suffer from freedom that they cannot use; a fast one's must be unskewed from the first stage on.
+/// What is assumed of the velocity. A slow robot's scan is hardly skewed: its velocity is left to the
+/// scans that follow, since freedom that the pairs cannot use only leads astray. A fast one's scan
+/// must be unskewed from the first stage on.
 struct Motion {
-  bool free_when_coarse;
+  bool from_skew;
   double level_m_s;     ///< standard deviation of the horizontal velocity
   double vertical_m_s;
 };
-
 /// From planes that reach a metre to the finest, the last with the noise as it is.
 constexpr std::array<DescentStage, 4> kDescent = {{{2, 1.2F, 0.35F, 6},
                                                    {2, 0.8F, 0.15F, 6},
@@ -30,7 +30,7 @@ constexpr std::array<DescentStage, 4> kDescent = {{{2, 1.2F, 0.35F, 6},
                                                    {0, 0.3F, 0.005F, 8}}};
 constexpr std::size_t kFirstFine = 2;  // stages from here on are fine enough to tell a velocity
 constexpr std::size_t kSearchPoints = 700;
-constexpr std::size_t kRefined = 6;
+constexpr std::size_t kRefined = 3;  // of each motion
 
 struct Candidate {
   FilterState start;
@@ -161,7 +161,7 @@ struct Search {
       // While the pose is off by more than the planes of an edge are apart, every point is ambiguous.
       if (i + 1 < kDescent.size()) stage.association.ambiguity_sigmas = 0;
       stage.max_iterations = kDescent[i].iterations;
-      stage.velocity_from_skew = motion.free_when_coarse || i >= kFirstFine;
+      stage.velocity_from_skew = motion.from_skew;
       // Each stage starts from the pose of the one before, but keeps the prior of the first: the
       // same points must not count twice.
       FilterState prior = candidate.start;
@@ -175,22 +175,18 @@ struct Search {
   }
 };
 
+/// Candidates of one motion from all of the pattern, the best first.
 std::vector<Candidate> ranked(const Search& search, const SelectedScan& few,
-                              const FilterState& prior) {
-  const double speed = search.uncertainty.speed_m_s;
-  const std::array<Motion, 2> motions = {
-      {{false, std::min(1.5, speed), std::min(0.1, speed)}, {true, speed, std::min(0.5, speed)}}};
+                              const FilterState& prior, const Motion& motion) {
   std::vector<Candidate> candidates;
-  for (const Motion& motion : motions) {
-    for (const FilterState& start : pattern(prior, few.imu, search.uncertainty, search.gravity)) {
-      Candidate given{start, start, motion, 0};
-      search.descend(few, 0, kFirstFine, given);
-      Candidate lifted = given;
-      search.choose_height(lifted.state);
-      for (Candidate& candidate : {std::ref(given), std::ref(lifted)}) {
-        candidate.score = search.descend(few, kFirstFine, kDescent.size(), candidate);
-        candidates.push_back(candidate);
-      }
+  for (const FilterState& start : pattern(prior, few.imu, search.uncertainty, search.gravity)) {
+    Candidate given{start, start, motion, 0};
+    search.descend(few, 0, kFirstFine, given);
+    Candidate lifted = given;
+    search.choose_height(lifted.state);
+    for (Candidate& candidate : {std::ref(given), std::ref(lifted)}) {
+      candidate.score = search.descend(few, kFirstFine, kDescent.size(), candidate);
+      candidates.push_back(candidate);
     }
   }
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -219,24 +215,28 @@ std::vector<Candidate> distinct(const std::vector<Candidate>& candidates, std::s
 
 }  // namespace
 
-InitialAlignment align_initially(const map::PriorMap& map, const SelectedScan& scan,
-                                 const FilterState& prior, const InitialUncertainty& uncertainty,
-                                 const Eigen::Vector3d& gravity, const UpdateOptions& options,
-                                 WorkerPool& pool, UpdateWorkspace& work) {
+std::vector<StartCandidate> align_initially(const map::PriorMap& map, const SelectedScan& scan,
+                                            const FilterState& prior,
+                                            const InitialUncertainty& uncertainty,
+                                            const Eigen::Vector3d& gravity,
+                                            const UpdateOptions& options, WorkerPool& pool,
+                                            UpdateWorkspace& work) {
   const Search search{map, gravity, options, uncertainty, pool, work};
-  std::vector<Candidate> candidates =
-      distinct(ranked(search, thinned(scan, kSearchPoints), prior), kRefined);
-  InitialAlignment best;
-  double best_score = 0;
-  for (Candidate& candidate : candidates) {
-    const double score = search.descend(scan, kFirstFine, kDescent.size(), candidate);
-    if (score <= best_score) continue;
-    best_score = score;
-    best.state = candidate.state;
-    best.inlier_share = score / static_cast<double>(scan.selected.size());
-    best.found = true;
+  const double speed = uncertainty.speed_m_s;
+  const Motion slow{false, std::min(1.5, speed), std::min(0.1, speed)};
+  const Motion fast{true, speed, std::min(0.5, speed)};
+  const SelectedScan few = thinned(scan, kSearchPoints);
+  std::vector<StartCandidate> starts;
+  for (const Motion& motion : {slow, fast}) {
+    StartCandidate best;
+    for (Candidate& candidate : distinct(ranked(search, few, prior, motion), kRefined)) {
+      const double share = search.descend(scan, kFirstFine, kDescent.size(), candidate) /
+                           static_cast<double>(scan.selected.size());
+      if (share > best.inlier_share) best = {candidate.state, share};
+    }
+    if (best.inlier_share > 0) starts.push_back(best);
   }
-  return best;
+  return starts;
 }
 
 }  // namespace holdfast::baselines

@@ -14,9 +14,7 @@ constexpr int kScansToConfirm = 2;
 constexpr TimeNs kImuMemory = 2 * kSecond;
 constexpr double kAccelBiasJump = 0.3;  // m/s^2, what a bias may jump by
 constexpr double kGyroBiasJump = 0.03;  // rad/s
-constexpr double kStartSigmaM = 0.05;    // of the first scan's alignment, beyond its covariance
-constexpr double kStartSigmaRad = 0.005;
-constexpr double kStartSigmaMS = 0.5;
+constexpr float kCoarseSurfaceSigmaM = 0.05F;  // while coarse planes are matched
 
 /// Directions in which this scan alone determines the position worse than `sigma`, the rotation being
 /// free: eigenvectors of the Schur complement of the rotation.
@@ -92,10 +90,12 @@ void MapFilter::step(const Scan& scan, StageClock& clock, StepReport& report) {
     report.reason = focused.error().message;
     return;
   }
+  clock.book(Stage::kSelect);
   if (started_) {
     track(clock, report);
   } else {
     start(report);
+    clock.book(Stage::kStart);
   }
   imu_.drop_before(scan.end_time - kImuMemory);
 }
@@ -106,24 +106,37 @@ void MapFilter::start(StepReport& report) {
     report.reason = "no returns yet";
     return;
   }
-  UpdateOptions how = options();
-  how.velocity_from_skew = true;
-  const InitialAlignment aligned = align_initially(map_, scan_, state_, setup_.start,
-                                                   map_.info().gravity_map, how, pool_, work_);
-  report.inlier_share = aligned.inlier_share;
-  if (!aligned.found || aligned.inlier_share < setup_.filter.min_inlier_share) {
+  starts_ = align_initially(map_, scan_, state_, setup_.start, map_.info().gravity_map, options(),
+                            pool_, work_);
+  std::erase_if(starts_, [&](const StartCandidate& start) {
+    return start.inlier_share < setup_.filter.min_inlier_share;
+  });
+  if (starts_.empty()) {
     report.reason = "the scan does not fit the map near the initial pose";
     return;
   }
-  state_ = aligned.state;
-  state_.t = report.pose_time;
-  // A single scan whose own skew was estimated with it is not as good as its points are many.
-  state_.P.diagonal().segment<3>(FilterState::kP).array() += kStartSigmaM * kStartSigmaM;
-  state_.P.diagonal().segment<3>(FilterState::kR).array() += kStartSigmaRad * kStartSigmaRad;
-  state_.P.diagonal().segment<3>(FilterState::kV).array() += kStartSigmaMS * kStartSigmaMS;
+  for (StartCandidate& start : starts_) start.state.t = report.pose_time;
+  state_ = starts_.front().state;
+  report.inlier_share = starts_.front().inlier_share;
   started_ = true;
   confirmed_ = 1;
   report.reason = "first scan aligned";
+}
+
+/// The start whose prediction the second scan agrees with best.
+void MapFilter::choose_start(StageClock& clock, StepReport& report) {
+  double best_weight = -1;
+  FilterState best = state_;
+  for (const StartCandidate& start : starts_) {
+    state_ = start.state;
+    predict(report.pose_time, report);
+    const UpdateResult update = correct(clock);
+    if (!update.usable || update.equations.weight <= best_weight) continue;
+    best_weight = update.equations.weight;
+    best = start.state;
+  }
+  state_ = best;
+  starts_.clear();
 }
 
 bool MapFilter::predict(TimeNs to, StepReport& report) {
@@ -136,13 +149,20 @@ bool MapFilter::predict(TimeNs to, StepReport& report) {
 UpdateResult MapFilter::correct(StageClock& clock) {
   if (scan_.selected.empty()) return {};
   const FilterState predicted = state_;
-  UpdateOptions how = options();
-  // After dead reckoning the planes asked must reach as far as the pose may be off.
   const double sigma = largest_sigma(state_.P, FilterState::kP);
-  how.association.gate_m = std::max(how.association.gate_m, static_cast<float>(3.0 * sigma));
-  how.association.level = sigma > 0.3 ? 2 : sigma > 0.1 ? 1 : 0;
-  UpdateResult update = update_with_scan(map_, scan_, map_.info().gravity_map, how, pool_, work_,
-                                         predicted, state_, &clock);
+  UpdateResult update;
+  // Where the pose may be off by more than the finest planes reach, the coarser ones lead the way.
+  for (int level = sigma > 0.3 ? 2 : sigma > 0.1 ? 1 : 0; level >= 0; --level) {
+    UpdateOptions how = options();
+    how.association.level = level;
+    if (level > 0) {
+      how.association.gate_m = std::max(how.association.gate_m, static_cast<float>(3.0 * sigma));
+      how.association.surface_sigma_m = kCoarseSurfaceSigmaM;
+      how.association.ambiguity_sigmas = 0;
+    }
+    update = update_with_scan(map_, scan_, map_.info().gravity_map, how, pool_, work_, predicted,
+                              state_, &clock);
+  }
   const double share = update.equations.weight / static_cast<double>(scan_.selected.size());
   update.usable = update.usable && share >= setup_.filter.min_inlier_share;
   if (!update.usable) state_ = predicted;
@@ -162,6 +182,7 @@ bool MapFilter::surprised_by_imu(const FilterState& predicted) const {
 }
 
 void MapFilter::track(StageClock& clock, StepReport& report) {
+  if (!starts_.empty()) choose_start(clock, report);
   const FilterState before = state_;
   predict(report.pose_time, report);
   const FilterState predicted = state_;

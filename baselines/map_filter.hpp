@@ -68,6 +68,7 @@ class MapFilter {
   void track(StageClock& clock, StepReport& report);
   bool predict(TimeNs to, StepReport& report);
   UpdateResult correct(StageClock& clock);
+  void choose_start(StageClock& clock, StepReport& report);
   bool surprised_by_imu(const FilterState& predicted) const;
   void judge(const UpdateResult& update, StepReport& report);
   void describe(const UpdateResult& update, StepReport& report) const;
@@ -81,6 +82,7 @@ class MapFilter {
   UpdateWorkspace work_;
   SelectedScan scan_;
   FilterState state_;
+  std::vector<StartCandidate> starts_;  ///< after the first scan, until the second has chosen
   std::uint64_t scan_number_ = 0;
   int confirmed_ = 0;  ///< scans in agreement since the start
   bool started_ = false;

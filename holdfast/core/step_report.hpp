@@ -31,9 +31,9 @@ constexpr bool claims_pose(State state) {
 }
 
 /// The work of a step, in order. Names of the ms_ columns of steps.csv.
-enum class Stage : std::uint8_t { kPredict, kDeskew, kAssociate, kSolve, kHealth };
-constexpr std::array<std::string_view, 5> kStageNames = {"predict", "deskew", "associate", "solve",
-                                                         "health"};
+enum class Stage : std::uint8_t { kStart, kSelect, kPredict, kDeskew, kAssociate, kSolve, kHealth };
+constexpr std::array<std::string_view, 7> kStageNames = {
+    "start", "select", "predict", "deskew", "associate", "solve", "health"};
 
 /// Thread CPU time of one step, ms.
 struct StageTimes {

@@ -98,7 +98,8 @@ double estimate_noise(const LocalCloud& local, double cell_m) {
   std::size_t number = 0;
   for (const auto& [key, indices] : local.buckets) {
     if (number++ % step != 0) continue;
-    const PointGrid grid(points_around(local, key, 0.0), cell_m);
+    // With a margin: a wall on the border of two tiles must not be cut in two thin halves.
+    const PointGrid grid(points_around(local, key, 1.0), cell_m);
     const auto& cells = grid.occupied();
     const std::size_t cell_step = std::max<std::size_t>(1, cells.size() / 200);
     for (std::size_t i = 0; i < cells.size(); i += cell_step) {
