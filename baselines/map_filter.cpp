@@ -14,6 +14,7 @@ constexpr int kScansToConfirm = 2;
 constexpr TimeNs kImuMemory = 2 * kSecond;
 constexpr double kAccelBiasJump = 0.3;  // m/s^2, what a bias may jump by
 constexpr double kGyroBiasJump = 0.03;  // rad/s
+constexpr double kCoarseFromM = 0.1;           // uncertainty from which coarse planes are asked
 constexpr float kCoarseSurfaceSigmaM = 0.05F;  // while coarse planes are matched
 
 /// Directions in which this scan alone determines the position worse than `sigma`, the rotation being
@@ -146,22 +147,39 @@ bool MapFilter::predict(TimeNs to, StepReport& report) {
   return true;
 }
 
-UpdateResult MapFilter::correct(StageClock& clock) {
-  if (scan_.selected.empty()) return {};
-  const FilterState predicted = state_;
-  const double sigma = largest_sigma(state_.P, FilterState::kP);
+UpdateResult MapFilter::correct_from(int coarsest, const FilterState& predicted,
+                                     StageClock& clock) {
+  state_ = predicted;
   UpdateResult update;
-  // Where the pose may be off by more than the finest planes reach, the coarser ones lead the way.
-  for (int level = sigma > 0.3 ? 2 : sigma > 0.1 ? 1 : 0; level >= 0; --level) {
+  for (int level = coarsest; level >= 0; --level) {
     UpdateOptions how = options();
     how.association.level = level;
     if (level > 0) {
-      how.association.gate_m = std::max(how.association.gate_m, static_cast<float>(3.0 * sigma));
+      const auto reach = static_cast<float>(3.0 * largest_sigma(predicted.P, FilterState::kP));
+      how.association.gate_m = std::max(how.association.gate_m, reach);
       how.association.surface_sigma_m = kCoarseSurfaceSigmaM;
       how.association.ambiguity_sigmas = 0;
     }
     update = update_with_scan(map_, scan_, map_.info().gravity_map, how, pool_, work_, predicted,
                               state_, &clock);
+  }
+  return update;
+}
+
+UpdateResult MapFilter::correct(StageClock& clock) {
+  if (scan_.selected.empty()) return {};
+  const FilterState predicted = state_;
+  const double sigma = largest_sigma(predicted.P, FilterState::kP);
+  UpdateResult update = correct_from(0, predicted, clock);
+  if (sigma > kCoarseFromM) {
+    // The pose may be off by more than the finest planes reach: let coarser ones lead, too.
+    const FilterState direct_state = state_;
+    const UpdateResult led = correct_from(sigma > 3.0 * kCoarseFromM ? 2 : 1, predicted, clock);
+    if (led.equations.weight > update.equations.weight) {
+      update = led;
+    } else {
+      state_ = direct_state;
+    }
   }
   const double share = update.equations.weight / static_cast<double>(scan_.selected.size());
   update.usable = update.usable && share >= setup_.filter.min_inlier_share;
@@ -181,6 +199,23 @@ bool MapFilter::surprised_by_imu(const FilterState& predicted) const {
   return moved.dot(predicted.P.topLeftCorner<6, 6>().ldlt().solve(moved)) > kSurprise;
 }
 
+/// A bias may have jumped, or the IMU may be worse than its configured noise: does the scan fit better
+/// if the biases are let go? If not, all stays as it was.
+UpdateResult MapFilter::release_biases(const FilterState& before, const UpdateResult& update,
+                                       StageClock& clock, StepReport& report) {
+  const FilterState held = state_;
+  last_surprise_ = state_.t;
+  state_ = before;
+  state_.P.diagonal().segment<3>(FilterState::kBa).array() += kAccelBiasJump * kAccelBiasJump;
+  state_.P.diagonal().segment<3>(FilterState::kBg).array() += kGyroBiasJump * kGyroBiasJump;
+  predict(report.pose_time, report);
+  clock.book(Stage::kPredict);
+  const UpdateResult released = correct(clock);
+  if (released.usable && released.equations.weight > update.equations.weight) return released;
+  state_ = held;
+  return update;
+}
+
 void MapFilter::track(StageClock& clock, StepReport& report) {
   if (!starts_.empty()) choose_start(clock, report);
   const FilterState before = state_;
@@ -188,16 +223,7 @@ void MapFilter::track(StageClock& clock, StepReport& report) {
   const FilterState predicted = state_;
   clock.book(Stage::kPredict);
   UpdateResult update = correct(clock);
-  if (update.usable && surprised_by_imu(predicted)) {
-    last_surprise_ = state_.t;
-    // A bias has jumped, or the IMU is worse than its configured noise: let the biases go.
-    state_ = before;
-    state_.P.diagonal().segment<3>(FilterState::kBa).array() += kAccelBiasJump * kAccelBiasJump;
-    state_.P.diagonal().segment<3>(FilterState::kBg).array() += kGyroBiasJump * kGyroBiasJump;
-    predict(report.pose_time, report);
-    clock.book(Stage::kPredict);
-    update = correct(clock);
-  }
+  if (update.usable && surprised_by_imu(predicted)) update = release_biases(before, update, clock, report);
   describe(update, report);
   judge(update, report);
 }

@@ -68,6 +68,9 @@ class MapFilter {
   void track(StageClock& clock, StepReport& report);
   bool predict(TimeNs to, StepReport& report);
   UpdateResult correct(StageClock& clock);
+  UpdateResult correct_from(int coarsest, const FilterState& predicted, StageClock& clock);
+  UpdateResult release_biases(const FilterState& before, const UpdateResult& update,
+                              StageClock& clock, StepReport& report);
   void choose_start(StageClock& clock, StepReport& report);
   bool surprised_by_imu(const FilterState& predicted) const;
   void judge(const UpdateResult& update, StepReport& report);
