@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Sets everything up, simulates a drive in the article's corridor, makes a map of its survey, localizes
-# the drive in that map, prints the result and writes the report.
-#   ./demo.sh [SCENARIO [SEED]]        corridor (default), office, hall, ...: holdfast simulate --list
+# Sets everything up, simulates a drive in the article's corridor, makes a map of its survey,
+# localizes the drive in that map, prints the result and writes the report.
+#   ./demo.sh [SCENARIO [SEED]]      corridor (default), office, hall, ...: holdfast simulate --list
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 scenario=${1:-corridor}

@@ -2,8 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
-/// The subcommands of the program, one source file each. Each function adds its command with options
-/// and help to `app`; when the command line names it, it runs and throws CommandFailed on failure.
+/// The subcommands of the program, one source file each. Each function adds its command with
+/// options and help to `app`; when the command line names it, it runs and throws CommandFailed on
+/// failure.
 namespace holdfast::apps {
 
 /// Ends the program with "error: MESSAGE" on stderr and the exit code of the contract:

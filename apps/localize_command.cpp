@@ -121,26 +121,26 @@ void localize(const Arguments& args) {
   auto reader = value_or_fail(io::open_log(args.log, log_options));
   auto map = value_or_fail(map::PriorMap::open(args.map));
   const map::MapInfo info = map.info();
-  auto localizer = value_or_fail(
-      pipeline::Localizer::create(config, std::move(map), pose, args.run.threads));
+  auto localizer =
+      value_or_fail(pipeline::Localizer::create(config, std::move(map), pose, args.run.threads));
   Run run{value_or_fail(pipeline::RunFiles::create(args.out)), {}};
   const auto begin = std::chrono::steady_clock::now();
   value_or_fail(pipeline::run(*reader, localizer, [&](const StepReport& report, double progress) {
     return run.on_step(report, progress);
   }));
   if (run.summary.scans() == 0) {
-    throw CommandFailed{1, fmt::format("{}: no scan in this log{}", args.log,
-                                       args.run.scans.empty() ? "" : " with --scans " + args.run.scans)};
+    throw CommandFailed{
+        1, fmt::format("{}: no scan in this log{}", args.log,
+                       args.run.scans.empty() ? "" : " with --scans " + args.run.scans)};
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   value_or_fail(run.files.close());
   pipeline::Config written = config;
   value_or_fail(run.files.write("config.yaml", io::write_config(pipeline::fields_of(written))));
+  value_or_fail(
+      run.files.write("map_view.json", value_or_fail(pipeline::map_view_json(args.map, info))));
   value_or_fail(run.files.write(
-      "map_view.json", value_or_fail(pipeline::map_view_json(args.map, info))));
-  value_or_fail(run.files.write(
-      "summary.json",
-      run.summary.json(about_run(args, config, info, *reader, elapsed.count()))));
+      "summary.json", run.summary.json(about_run(args, config, info, *reader, elapsed.count()))));
   write_report(args, run.files.staging());
   value_or_fail(run.files.commit());
   print_result(run.summary, args);
@@ -152,14 +152,17 @@ void add_localize_command(CLI::App& app) {
   auto* command = app.add_subcommand("localize", "localize a log in a prior map");
   auto args = std::make_shared<Arguments>();
   command->add_option("log", args->log, "log: a ROS 1 bag or a KITTI raw folder")->required();
-  command->add_option("--map", args->map, "folder of the map (see holdfast map import)")->required();
-  command->add_option("--out", args->out, "folder for trajectory, steps, summary, report")->required();
+  command->add_option("--map", args->map, "folder of the map (see holdfast map import)")
+      ->required();
+  command->add_option("--out", args->out, "folder for trajectory, steps, summary, report")
+      ->required();
   command->add_option("--initial-pose", args->initial_pose,
                       "\"x y z qx qy qz qw\": T_map_body at the end of the first scan, good to 1 m "
                       "and 10 degrees");
   command->add_option("--method", args->method, "localizer: map_filter");
   command->add_option("--truth", args->truth, "true trajectory (TUM): the report shows errors");
-  command->add_option("--events", args->events, "events.jsonl of a simulation: shown in the report");
+  command->add_option("--events", args->events,
+                      "events.jsonl of a simulation: shown in the report");
   command->add_flag("--no-report", args->no_report, "leave report.html out");
   args->run.add_to(*command);
   command->callback([args] { localize(*args); });

@@ -58,8 +58,8 @@ void make_map(map::MapSource source, const std::string& out, int threads) {
   map::MapInfo info;
   {
     ProgressBar bar("fitting surfaces");
-    info = value_or_fail(map::build_map(
-        std::move(source), out, pool, [&](std::size_t done, std::size_t all) {
+    info = value_or_fail(
+        map::build_map(std::move(source), out, pool, [&](std::size_t done, std::size_t all) {
           bar.update(static_cast<double>(done) / static_cast<double>(all),
                      fmt::format("{} of {} tiles", done, all));
         }));
@@ -73,7 +73,8 @@ void add_import(CLI::App& map) {
   auto* command = map.add_subcommand("import", "make a map from a point cloud");
   auto args = std::make_shared<ImportArguments>();
   command->add_option("cloud", args->cloud, "cloud in the map frame (.pcd or .ply)");
-  command->add_option("--edges", args->edges, "cloud of edge points, with --planes instead of CLOUD");
+  command->add_option("--edges", args->edges,
+                      "cloud of edge points, with --planes instead of CLOUD");
   command->add_option("--planes", args->planes, "cloud of planar points");
   command->add_option("--out", args->out, "folder of the map")->required();
   command->add_option("--threads", args->threads, "threads; the map does not depend on it")
@@ -90,9 +91,10 @@ struct BuildArguments {
 
 void build(const BuildArguments& args) {
   if (args.poses.empty()) {
-    throw CommandFailed{1,
-                        "map build needs --poses TRAJECTORY.tum: building a map without known poses "
-                        "is not available yet"};
+    throw CommandFailed{
+        1,
+        "map build needs --poses TRAJECTORY.tum: building a map without known poses "
+        "is not available yet"};
   }
   const auto poses = value_or_fail(io::read_tum(args.poses));
   map::MapSource source;
@@ -102,14 +104,15 @@ void build(const BuildArguments& args) {
     options.need_imu = false;
     auto reader = value_or_fail(io::open_log(log, options));
     ProgressBar bar("reading " + std::filesystem::path(log).filename().string());
-    const auto added = value_or_fail(pipeline::accumulate(
-        *reader, poses, config.T_body_lidar, config.preprocess, source.cloud,
-        [&](double share) { bar.update(share); }));
+    const auto added =
+        value_or_fail(pipeline::accumulate(*reader, poses, config.T_body_lidar, config.preprocess,
+                                           source.cloud, [&](double share) { bar.update(share); }));
     if (added.scans == 0) {
-      throw CommandFailed{1, fmt::format("{}: none of its {} scans lies inside the times of {}", log,
-                                         added.scans + added.outside, args.poses)};
+      throw CommandFailed{1, fmt::format("{}: none of its {} scans lies inside the times of {}",
+                                         log, added.scans + added.outside, args.poses)};
     }
-    source.name += (source.name.empty() ? "" : " + ") + std::filesystem::path(log).filename().string();
+    source.name +=
+        (source.name.empty() ? "" : " + ") + std::filesystem::path(log).filename().string();
   }
   make_map(std::move(source), args.out, std::max(args.run.threads, 1));
 }

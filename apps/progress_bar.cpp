@@ -23,7 +23,8 @@ void ProgressBar::update(double share, const std::string& note) {
   if (mark == last_drawn_) return;
   last_drawn_ = mark;
   if (!terminal_) {
-    fmt::print(stderr, "{}: {:3.0f} %{}{}\n", title_, 100 * clamped, note.empty() ? "" : "  ", note);
+    fmt::print(stderr, "{}: {:3.0f} %{}{}\n", title_, 100 * clamped, note.empty() ? "" : "  ",
+               note);
     return;
   }
   const int filled = static_cast<int>(clamped * kWidth);

@@ -69,13 +69,13 @@ Result<SE3> parse_pose(const std::string& text) {
     }
   }
   if (v.size() != 7) {
-    return Error{fmt::format("a pose has 7 numbers, x y z qx qy qz qw; '{}' has {}", text,
-                             v.size())};
+    return Error{
+        fmt::format("a pose has 7 numbers, x y z qx qy qz qw; '{}' has {}", text, v.size())};
   }
   const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
   if (std::abs(q.norm() - 1.0) > 0.01) {
-    return Error{fmt::format("the quaternion of the pose '{}' has norm {:.3f}, not 1", text,
-                             q.norm())};
+    return Error{
+        fmt::format("the quaternion of the pose '{}' has norm {:.3f}, not 1", text, q.norm())};
   }
   return SE3{q.normalized(), {v[0], v[1], v[2]}};
 }

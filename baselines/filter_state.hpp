@@ -9,8 +9,8 @@
 namespace holdfast::baselines {
 
 /// Noise of the IMU as continuous-time densities. The defaults are ten times those of the article
-/// (3.1.1): they stand for an unknown IMU on a vehicle, with vibration, scale and timing errors that a
-/// data sheet's white noise leaves out.
+/// (3.1.1): they stand for an unknown IMU on a vehicle, with vibration, scale and timing errors
+/// that a data sheet's white noise leaves out.
 struct ImuNoiseConfig {
   double gyro_noise_density = 1.7e-3;
   double accel_noise_density = 2.0e-2;

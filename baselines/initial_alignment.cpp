@@ -15,19 +15,17 @@ struct DescentStage {
   int iterations;
 };
 
-/// What is assumed of the velocity. A slow robot's scan is hardly skewed: its velocity is left to the
-/// scans that follow, since freedom that the pairs cannot use only leads astray. A fast one's scan
-/// must be unskewed from the first stage on.
+/// What is assumed of the velocity. A slow robot's scan is hardly skewed: its velocity is left to
+/// the scans that follow, since freedom that the pairs cannot use only leads astray. A fast one's
+/// scan must be unskewed from the first stage on.
 struct Motion {
   bool from_skew;
-  double level_m_s;     ///< standard deviation of the horizontal velocity
+  double level_m_s;  ///< standard deviation of the horizontal velocity
   double vertical_m_s;
 };
 /// From planes that reach a metre to the finest, the last with the noise as it is.
-constexpr std::array<DescentStage, 4> kDescent = {{{2, 1.2F, 0.35F, 6},
-                                                   {2, 0.8F, 0.15F, 6},
-                                                   {1, 0.5F, 0.05F, 5},
-                                                   {0, 0.3F, 0.005F, 8}}};
+constexpr std::array<DescentStage, 4> kDescent = {
+    {{2, 1.2F, 0.35F, 6}, {2, 0.8F, 0.15F, 6}, {1, 0.5F, 0.05F, 5}, {0, 0.3F, 0.005F, 8}}};
 constexpr std::size_t kFirstFine = 2;  // stages from here on are fine enough to tell a velocity
 constexpr std::size_t kSearchPoints = 700;
 constexpr std::size_t kRefined = 3;  // of each motion
@@ -71,14 +69,20 @@ SE3 levelled(const SE3& T_map_body, const preprocess::ImuSegment& imu,
   return {(turn * T_map_body.rotation).normalized(), T_map_body.translation};
 }
 
-/// The given pose first, then shifted in the horizontal plane and turned about the vertical; each as
-/// given and levelled.
+/// The given pose first, then shifted in the horizontal plane and turned about the vertical; each
+/// as given and levelled.
 std::vector<FilterState> pattern(const FilterState& prior, const preprocess::ImuSegment& imu,
                                  const InitialUncertainty& u, const Eigen::Vector3d& gravity) {
   constexpr std::array<double, 5> kTurns = {0.0, 0.4, -0.4, 0.9, -0.9};
-  constexpr std::array<std::array<double, 2>, 9> kShifts = {
-      {{0, 0}, {0.7, 0}, {-0.7, 0}, {0, 0.7}, {0, -0.7}, {0.6, 0.6}, {-0.6, 0.6}, {0.6, -0.6},
-       {-0.6, -0.6}}};
+  constexpr std::array<std::array<double, 2>, 9> kShifts = {{{0, 0},
+                                                             {0.7, 0},
+                                                             {-0.7, 0},
+                                                             {0, 0.7},
+                                                             {0, -0.7},
+                                                             {0.6, 0.6},
+                                                             {-0.6, 0.6},
+                                                             {0.6, -0.6},
+                                                             {-0.6, -0.6}}};
   constexpr double kSameTilt = 0.02;
   std::vector<SE3> bases = {levelled(prior.T_map_body, imu, gravity)};
   if (so3::angle_between(bases[0].rotation, prior.T_map_body.rotation) > kSameTilt) {
@@ -148,7 +152,8 @@ struct Search {
     state.T_map_body.translation.z() = best_z;
   }
 
-  /// Draws the candidate into the map, stages [first, last); score = sum of robust weights at the last.
+  /// Draws the candidate into the map, stages [first, last); score = sum of robust weights at the
+  /// last.
   double descend(const SelectedScan& scan, std::size_t first, std::size_t last,
                  Candidate& candidate) const {
     const Motion& motion = candidate.motion;
@@ -158,7 +163,8 @@ struct Search {
       stage.association.level = kDescent[i].level;
       stage.association.gate_m = kDescent[i].gate_m;
       stage.association.surface_sigma_m = kDescent[i].surface_sigma_m;
-      // While the pose is off by more than the planes of an edge are apart, every point is ambiguous.
+      // While the pose is off by more than the planes of an edge are apart, every point is
+      // ambiguous.
       if (i + 1 < kDescent.size()) stage.association.ambiguity_sigmas = 0;
       stage.max_iterations = kDescent[i].iterations;
       stage.velocity_from_skew = motion.from_skew;

@@ -17,11 +17,11 @@ struct StartCandidate {
   double inlier_share = 0;  ///< of the selected points, at the finest resolution
 };
 
-/// Pose and velocity of the body at the end of a scan, from a pose that may be off by `uncertainty`:
-/// starts from a fixed pattern of poses around `prior` (position and yaw), each drawn into the map
-/// from the coarsest to the finest resolution with few points, and the best of them refined with all.
-/// Up to two candidates, of a slow and of a fast motion: one scan of a road cannot tell them apart,
-/// the next one can. Same input, same result.
+/// Pose and velocity of the body at the end of a scan, from a pose that may be off by
+/// `uncertainty`: starts from a fixed pattern of poses around `prior` (position and yaw), each
+/// drawn into the map from the coarsest to the finest resolution with few points, and the best of
+/// them refined with all. Up to two candidates, of a slow and of a fast motion: one scan of a road
+/// cannot tell them apart, the next one can. Same input, same result.
 std::vector<StartCandidate> align_initially(const map::PriorMap& map, const SelectedScan& scan,
                                             const FilterState& prior,
                                             const InitialUncertainty& uncertainty,

@@ -12,13 +12,13 @@ using registration::kRotation;
 constexpr double kMapRadiusM = 150.0;  // tiles farther than this are not needed
 constexpr int kScansToConfirm = 2;
 constexpr TimeNs kImuMemory = 2 * kSecond;
-constexpr double kAccelBiasJump = 0.3;  // m/s^2, what a bias may jump by
-constexpr double kGyroBiasJump = 0.03;  // rad/s
+constexpr double kAccelBiasJump = 0.3;         // m/s^2, what a bias may jump by
+constexpr double kGyroBiasJump = 0.03;         // rad/s
 constexpr double kCoarseFromM = 0.1;           // uncertainty from which coarse planes are asked
 constexpr float kCoarseSurfaceSigmaM = 0.05F;  // while coarse planes are matched
 
-/// Directions in which this scan alone determines the position worse than `sigma`, the rotation being
-/// free: eigenvectors of the Schur complement of the rotation.
+/// Directions in which this scan alone determines the position worse than `sigma`, the rotation
+/// being free: eigenvectors of the Schur complement of the rotation.
 std::vector<Eigen::Vector3d> weak_directions(const registration::Matrix9d& H, double sigma) {
   const Eigen::Matrix3d pr = H.block<3, 3>(kPosition, kRotation);
   const Eigen::Matrix3d rr = H.block<3, 3>(kRotation, kRotation);
@@ -27,16 +27,17 @@ std::vector<Eigen::Vector3d> weak_directions(const registration::Matrix9d& H, do
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information);
   std::vector<Eigen::Vector3d> weak;
   for (int i = 0; i < 3; ++i) {
-    if (solver.eigenvalues()[i] < 1.0 / (sigma * sigma)) weak.push_back(solver.eigenvectors().col(i));
+    if (solver.eigenvalues()[i] < 1.0 / (sigma * sigma))
+      weak.push_back(solver.eigenvectors().col(i));
   }
   return weak;
 }
 
 double largest_sigma(const Matrix15d& P, int offset) {
   const Eigen::Matrix3d block = P.block<3, 3>(offset, offset);
-  return std::sqrt(std::max(
-      0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block, Eigen::EigenvaluesOnly)
-               .eigenvalues()[2]));
+  return std::sqrt(
+      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block, Eigen::EigenvaluesOnly)
+                        .eigenvalues()[2]));
 }
 
 }  // namespace
@@ -187,10 +188,10 @@ UpdateResult MapFilter::correct(StageClock& clock) {
   return update;
 }
 
-/// True where the scan moved the predicted pose by more than the prediction's covariance allows: the
-/// squared Mahalanobis distance is chi-square with 6 degrees of freedom at most, and exceeds 40 once
-/// in two million scans. After a surprise the filter is given a second to settle: velocity and biases
-/// that were let go follow the errors of single scans.
+/// True where the scan moved the predicted pose by more than the prediction's covariance allows:
+/// the squared Mahalanobis distance is chi-square with 6 degrees of freedom at most, and exceeds 40
+/// once in two million scans. After a surprise the filter is given a second to settle: velocity and
+/// biases that were let go follow the errors of single scans.
 bool MapFilter::surprised_by_imu(const FilterState& predicted) const {
   constexpr double kSurprise = 40.0;
   constexpr TimeNs kSettle = kSecond * 3 / 10;
@@ -199,8 +200,8 @@ bool MapFilter::surprised_by_imu(const FilterState& predicted) const {
   return moved.dot(predicted.P.topLeftCorner<6, 6>().ldlt().solve(moved)) > kSurprise;
 }
 
-/// A bias may have jumped, or the IMU may be worse than its configured noise: does the scan fit better
-/// if the biases are let go? If not, all stays as it was.
+/// A bias may have jumped, or the IMU may be worse than its configured noise: does the scan fit
+/// better if the biases are let go? If not, all stays as it was.
 UpdateResult MapFilter::release_biases(const FilterState& before, const UpdateResult& update,
                                        StageClock& clock, StepReport& report) {
   const FilterState held = state_;
@@ -223,7 +224,8 @@ void MapFilter::track(StageClock& clock, StepReport& report) {
   const FilterState predicted = state_;
   clock.book(Stage::kPredict);
   UpdateResult update = correct(clock);
-  if (update.usable && surprised_by_imu(predicted)) update = release_biases(before, update, clock, report);
+  if (update.usable && surprised_by_imu(predicted))
+    update = release_biases(before, update, clock, report);
   describe(update, report);
   judge(update, report);
 }

@@ -54,8 +54,8 @@ class MapFilter {
   /// Readings in ascending order; others are refused and counted.
   void add_imu(const ImuSample& sample) { imu_.add(sample); }
 
-  /// The pose at the scan's last point. IMU up to that time should have been added; where it was not,
-  /// the last reading is held and the report says for how long.
+  /// The pose at the scan's last point. IMU up to that time should have been added; where it was
+  /// not, the last reading is held and the report says for how long.
   StepReport add_scan(const Scan& scan);
 
   const FilterState& state() const { return state_; }

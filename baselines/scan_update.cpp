@@ -87,8 +87,17 @@ class Iteration {
   Iteration(const map::PriorMap& map, const SelectedScan& scan, const Eigen::Vector3d& gravity,
             const UpdateOptions& options, WorkerPool& pool, UpdateWorkspace& work,
             const FilterState& prior, FilterState& state, StageClock* clock)
-      : map_(map), scan_(scan), gravity_(gravity), options_(options), pool_(pool), work_(work),
-        state_(state), clock_(clock), prior_(prior), deskewed_(state), paired_(state),
+      : map_(map),
+        scan_(scan),
+        gravity_(gravity),
+        options_(options),
+        pool_(pool),
+        work_(work),
+        state_(state),
+        clock_(clock),
+        prior_(prior),
+        deskewed_(state),
+        paired_(state),
         prior_information_(prior_.P.ldlt().solve(Matrix15d::Identity())) {}
 
   UpdateResult run() {
@@ -129,8 +138,8 @@ class Iteration {
   bool step(UpdateResult& result) {
     NormalEquations& e = result.equations;
     const double anneal = kAnneal[std::min<std::size_t>(result.iterations, kAnneal.size() - 1)];
-    e = registration::linearise(work_.pairs, anchored(state_, map_),
-                                anneal * options_.robust_scale, pool_, work_.partials);
+    e = registration::linearise(work_.pairs, anchored(state_, map_), anneal * options_.robust_scale,
+                                pool_, work_.partials);
     result.usable = e.weight >= kLeastWeight;
     if (!result.usable) return false;
     NormalEquations softened = e;

@@ -22,10 +22,10 @@ struct SelectedScan {
 /// How one pass over a scan is done.
 struct UpdateOptions {
   registration::AssociationOptions association;
-  double robust_scale = 3.0;     ///< of the Geman-McClure loss, in sigmas
+  double robust_scale = 3.0;  ///< of the Geman-McClure loss, in sigmas
   int max_iterations = 6;
-  double map_sigma_m = 0.001;    ///< error of the map common to a whole scan, position
-  double map_sigma_rad = 0.0001; ///< and rotation
+  double map_sigma_m = 0.001;     ///< error of the map common to a whole scan, position
+  double map_sigma_rad = 0.0001;  ///< and rotation
   /// Let the velocity follow from the skew of the scan too: needed where nothing else tells it (a
   /// start on the move); otherwise the prediction knows it far better.
   bool velocity_from_skew = false;
@@ -46,11 +46,12 @@ struct UpdateWorkspace {
   std::vector<registration::NormalEquations> partials;
 };
 
-/// Iterated update with one scan: Gauss-Newton, from `state`, on `prior` (a prediction at the scan's
-/// end, with its covariance) and all point-to-plane residuals. The residuals depend on the velocity too, since it moved
-/// the points during the scan; so a single scan can tell the velocity of a robot that starts on the
-/// move (UpdateOptions::velocity_from_skew). The map's own error is common to all points of a scan: a pose offset with `map_sigma` is
-/// marginalised out, which caps the information however many points there are.
+/// Iterated update with one scan: Gauss-Newton, from `state`, on `prior` (a prediction at the
+/// scan's end, with its covariance) and all point-to-plane residuals. The residuals depend on the
+/// velocity too, since it moved the points during the scan; so a single scan can tell the velocity
+/// of a robot that starts on the move (UpdateOptions::velocity_from_skew). The map's own error is
+/// common to all points of a scan: a pose offset with `map_sigma` is marginalised out, which caps
+/// the information however many points there are.
 UpdateResult update_with_scan(const map::PriorMap& map, const SelectedScan& scan,
                               const Eigen::Vector3d& gravity, const UpdateOptions& options,
                               WorkerPool& pool, UpdateWorkspace& work, const FilterState& prior,

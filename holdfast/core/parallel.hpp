@@ -9,9 +9,9 @@
 
 namespace holdfast {
 
-/// A few threads that work through numbered chunks. The cut into chunks depends on the problem only,
-/// never on the number of threads, so that sums taken in the order of chunks have the same bits with
-/// any number of threads. With one thread everything runs in the caller.
+/// A few threads that work through numbered chunks. The cut into chunks depends on the problem
+/// only, never on the number of threads, so that sums taken in the order of chunks have the same
+/// bits with any number of threads. With one thread everything runs in the caller.
 class WorkerPool {
  public:
   /// `threads` >= 1 counts the calling thread, which works too.

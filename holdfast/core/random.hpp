@@ -6,8 +6,8 @@
 
 namespace holdfast {
 
-/// A named, seeded stream of random numbers: same seed and name, same numbers on every platform, and
-/// streams of different names are independent, so that a new consumer never shifts an old one.
+/// A named, seeded stream of random numbers: same seed and name, same numbers on every platform,
+/// and streams of different names are independent, so that a new consumer never shifts an old one.
 /// xoshiro256++ (Blackman and Vigna, 2019), seeded by SplitMix64 from an FNV-1a hash of the name.
 class RandomStream {
  public:

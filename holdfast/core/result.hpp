@@ -7,17 +7,19 @@
 
 namespace holdfast {
 
-/// Why something outside the program could not be used: file, place, what was expected, what was found.
+/// Why something outside the program could not be used: file, place, what was expected, what was
+/// found.
 struct Error {
   std::string message;
 };
 
-/// A value or the reason why there is none. Used at the boundary with files, YAML, logs and sockets;
-/// misuse by our own code is an assertion instead, a bad day of the robot a status in a report.
+/// A value or the reason why there is none. Used at the boundary with files, YAML, logs and
+/// sockets; misuse by our own code is an assertion instead, a bad day of the robot a status in a
+/// report.
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : content_(std::move(value)) {}  // NOLINT(google-explicit-constructor)
+  Result(T value) : content_(std::move(value)) {}      // NOLINT(google-explicit-constructor)
   Result(Error error) : content_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
 
   bool ok() const { return std::holds_alternative<T>(content_); }

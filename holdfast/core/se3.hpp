@@ -19,12 +19,9 @@ struct SE3 {
   }
   /// T_a_c = T_a_b * T_b_c; the rotation is renormalised.
   SE3 operator*(const SE3& other) const {
-    return {(rotation * other.rotation).normalized(),
-            rotation * other.translation + translation};
+    return {(rotation * other.rotation).normalized(), rotation * other.translation + translation};
   }
-  Eigen::Vector3d operator*(const Eigen::Vector3d& p) const {
-    return rotation * p + translation;
-  }
+  Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return rotation * p + translation; }
 };
 
 /// A body pose with its time.

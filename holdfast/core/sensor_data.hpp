@@ -20,10 +20,10 @@ struct ImuSample {
 
 /// One LiDAR return in the lidar frame at its own time of measurement (not deskewed).
 struct ScanPoint {
-  float x = 0, y = 0, z = 0;          ///< metres; never NaN in a Scan handed to the pipeline
-  float intensity = 0;                ///< as the sensor gives it
-  std::int32_t time_offset_ns = 0;    ///< from Scan::stamp
-  std::uint16_t ring = 0;             ///< laser index from the lowest beam up; 0 without rings
+  float x = 0, y = 0, z = 0;        ///< metres; never NaN in a Scan handed to the pipeline
+  float intensity = 0;              ///< as the sensor gives it
+  std::int32_t time_offset_ns = 0;  ///< from Scan::stamp
+  std::uint16_t ring = 0;           ///< laser index from the lowest beam up; 0 without rings
 };
 
 /// All returns of one revolution. Points are in the order in which the log holds them.
@@ -32,7 +32,7 @@ struct Scan {
   TimeNs end_time = 0;  ///< time of the last point (empty scan: stamp + nominal period); pose time
   std::vector<ScanPoint> points;
   bool has_ring = false;
-  bool has_point_times = false;  ///< false: offsets are all zero and nothing can be deskewed
+  bool has_point_times = false;      ///< false: offsets are all zero and nothing can be deskewed
   std::uint32_t invalid_points = 0;  ///< NaN or infinite points dropped while reading
 };
 

@@ -49,9 +49,8 @@ Eigen::Matrix3d right_jacobian_inverse(const Eigen::Vector3d& phi) {
   const double angle = std::sqrt(angle_sq);
   const Eigen::Matrix3d k = hat(phi);
   const double half = 0.5 * angle;
-  const double c = angle < kSmallAngle
-                       ? 1.0 / 12.0 + angle_sq / 720.0
-                       : (1.0 - half * std::cos(half) / std::sin(half)) / angle_sq;
+  const double c = angle < kSmallAngle ? 1.0 / 12.0 + angle_sq / 720.0
+                                       : (1.0 - half * std::cos(half) / std::sin(half)) / angle_sq;
   return Eigen::Matrix3d::Identity() + 0.5 * k + c * k * k;
 }
 

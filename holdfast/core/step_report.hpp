@@ -32,8 +32,8 @@ constexpr bool claims_pose(State state) {
 
 /// The work of a step, in order. Names of the ms_ columns of steps.csv.
 enum class Stage : std::uint8_t { kStart, kSelect, kPredict, kDeskew, kAssociate, kSolve, kHealth };
-constexpr std::array<std::string_view, 7> kStageNames = {
-    "start", "select", "predict", "deskew", "associate", "solve", "health"};
+constexpr std::array<std::string_view, 7> kStageNames = {"start",     "select", "predict", "deskew",
+                                                         "associate", "solve",  "health"};
 
 /// Thread CPU time of one step, ms.
 struct StageTimes {
@@ -47,17 +47,17 @@ struct StepReport {
   TimeNs stamp = 0;      ///< time of the scan's first point
   TimeNs pose_time = 0;  ///< time of its last point
   State state = State::kInitializing;
-  std::string reason;    ///< why this state, in a few words; empty for plain TRACKING
-  SE3 T_map_body;        ///< at pose_time; meaningful where claims_pose(state)
-  double p_wrong = -1;   ///< probability that the pose is wrong; < 0: not estimated
-  int matches = 0;       ///< points paired with a surface of the map
-  double inlier_share = 0;        ///< share of the selected points that agree with the map
-  double mean_abs_residual_m = 0; ///< mean distance of the agreeing points to their surfaces
+  std::string reason;              ///< why this state, in a few words; empty for plain TRACKING
+  SE3 T_map_body;                  ///< at pose_time; meaningful where claims_pose(state)
+  double p_wrong = -1;             ///< probability that the pose is wrong; < 0: not estimated
+  int matches = 0;                 ///< points paired with a surface of the map
+  double inlier_share = 0;         ///< share of the selected points that agree with the map
+  double mean_abs_residual_m = 0;  ///< mean distance of the agreeing points to their surfaces
   std::vector<Eigen::Vector3d> weak_directions;  ///< unit vectors in the map frame
   double sigma_trans_m = 0;  ///< largest standard deviation of the position, any direction
   double sigma_rot_rad = 0;  ///< likewise of the rotation
   int odom_epoch = 0;
-  TimeNs imu_held_ns = 0;    ///< part of the step for which the last IMU reading was held
+  TimeNs imu_held_ns = 0;  ///< part of the step for which the last IMU reading was held
   StageTimes times;
 };
 

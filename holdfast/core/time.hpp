@@ -10,7 +10,8 @@ using TimeNs = std::int64_t;
 
 constexpr TimeNs kSecond = 1'000'000'000;
 
-/// Seconds of `t`; exact to about 0.2 us for today's absolute times, so only for durations and display.
+/// Seconds of `t`; exact to about 0.2 us for today's absolute times, so only for durations and
+/// display.
 constexpr double to_seconds(TimeNs t) { return static_cast<double>(t) * 1e-9; }
 
 /// Nearest nanosecond to `seconds`.

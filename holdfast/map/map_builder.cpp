@@ -11,7 +11,7 @@
 
 #include "holdfast/io/atomic_output.hpp"
 #include "holdfast/map/checksum.hpp"
-#include "holdfast/map/tile_builder.hpp"
+#include "holdfast/map/fitting/tile_builder.hpp"
 
 namespace holdfast::map {
 namespace {
@@ -29,9 +29,7 @@ struct LocalCloud {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< from the cloud's origin to the map's
   Buckets buckets;
 
-  Eigen::Vector3d local(std::uint32_t i) const {
-    return cloud->points[i].cast<double>() + shift;
-  }
+  Eigen::Vector3d local(std::uint32_t i) const { return cloud->points[i].cast<double>() + shift; }
 };
 
 LocalCloud sort_into_tiles(const io::PointCloud& cloud, const Eigen::Vector3d& map_origin) {
@@ -76,8 +74,8 @@ T median(std::vector<T> values) {
   return *middle;
 }
 
-/// Side of the finest cell, a power of two: a cell on a surface holds about 4 points or more, and is
-/// large against the noise, so that the layers of a smeared wall fall into one cell.
+/// Side of the finest cell, a power of two: a cell on a surface holds about 4 points or more, and
+/// is large against the noise, so that the layers of a smeared wall fall into one cell.
 double cell_for(double spacing, double noise) {
   constexpr double kSpacings = 2.0;
   constexpr double kNoises = 10.0;
@@ -86,8 +84,8 @@ double cell_for(double spacing, double noise) {
   return cell;
 }
 
-/// Thickness of planes, over a spread sample of the cells of a few tiles: the median over the flatter
-/// half, so that foliage does not count.
+/// Thickness of planes, over a spread sample of the cells of a few tiles: the median over the
+/// flatter half, so that foliage does not count.
 double estimate_noise(const LocalCloud& local, double cell_m) {
   constexpr double kLeast = 0.003;
   constexpr double kMost = 0.08;
@@ -198,8 +196,7 @@ std::vector<TileResult> make_tiles(const Job& job, WorkerPool& pool,
 void set_bounds(const MapSource& source, MapInfo& info) {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector3d high = -low;
-  for (const io::PointCloud* cloud :
-       {&source.cloud, source.edges ? &*source.edges : nullptr}) {
+  for (const io::PointCloud* cloud : {&source.cloud, source.edges ? &*source.edges : nullptr}) {
     if (cloud == nullptr) continue;
     for (const auto& p : cloud->points) {
       const Eigen::Vector3d q = p.cast<double>() + cloud->origin;

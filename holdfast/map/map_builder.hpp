@@ -23,10 +23,10 @@ struct MapSource {
 /// Told after each tile: tiles done, tiles in all.
 using BuildProgress = std::function<void(std::size_t, std::size_t)>;
 
-/// Makes a map folder at `path`, whole or not at all: fits planes and lines at three resolutions and
-/// lays them out for look-up. The side of the finest cell follows from the spacing of the points.
-/// Same cloud, same bytes, with any number of threads. A cloud too small to fit anything to is an
-/// error.
+/// Makes a map folder at `path`, whole or not at all: fits planes and lines at three resolutions
+/// and lays them out for look-up. The side of the finest cell follows from the spacing of the
+/// points. Same cloud, same bytes, with any number of threads. A cloud too small to fit anything to
+/// is an error.
 Result<MapInfo> build_map(MapSource source, const std::filesystem::path& path, WorkerPool& pool,
                           const BuildProgress& progress = {});
 

@@ -16,8 +16,8 @@ std::string text_of(const Eigen::Vector3d& v) {
   return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
 }
 
-/// A tile is one line of text, "ix iy bytes points surface_checksum point_checksum": a large map has
-/// thousands, and a YAML mapping for each would take longer to parse than the tiles to load.
+/// A tile is one line of text, "ix iy bytes points surface_checksum point_checksum": a large map
+/// has thousands, and a YAML mapping for each would take longer to parse than the tiles to load.
 TileInfo tile_of(const std::string& line) {
   TileInfo tile;
   unsigned long long bytes = 0, points = 0, surface = 0, point = 0;
@@ -82,7 +82,8 @@ Result<MapInfo> read_map_info(const std::filesystem::path& dir) {
 
 std::string format_map_info(const MapInfo& info) {
   std::string text = fmt::format(
-      "format_version: {}\nidentity: {}\nsource: {}\norigin_m: {}\nbounds_m:\n  min: {}\n  max: {}\n"
+      "format_version: {}\nidentity: {}\nsource: {}\norigin_m: {}\nbounds_m:\n  min: {}\n  max: "
+      "{}\n"
       "gravity_map_m_s2: {}\ntile_size_m: {}\npoints: {}\nspacing_m: {:.4f}\nnoise_m: {:.5f}\n"
       "levels:\n",
       kMapFormatVersion, info.identity, YAML::Dump(YAML::Node(info.source)), text_of(info.origin),

@@ -12,8 +12,8 @@
 namespace holdfast::map {
 namespace {
 
-Result<std::vector<std::byte>> read_checked(const std::filesystem::path& path,
-                                            std::uint64_t bytes, std::uint64_t sum) {
+Result<std::vector<std::byte>> read_checked(const std::filesystem::path& path, std::uint64_t bytes,
+                                            std::uint64_t sum) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) return Error{fmt::format("{}: cannot open", path.string())};
   const auto size = static_cast<std::uint64_t>(file.tellg());
@@ -24,9 +24,10 @@ Result<std::vector<std::byte>> read_checked(const std::filesystem::path& path,
   file.seekg(0);
   file.read(reinterpret_cast<char*>(content.data()), static_cast<std::streamsize>(size));
   if (!file || checksum(content.data(), size) != sum) {
-    return Error{fmt::format("{}: content does not match its checksum in map.yaml: import the map "
-                             "again",
-                             path.string())};
+    return Error{
+        fmt::format("{}: content does not match its checksum in map.yaml: import the map "
+                    "again",
+                    path.string())};
   }
   return content;
 }
@@ -77,9 +78,10 @@ Status PriorMap::load(std::size_t number) {
   if (!tile) return tile.error();
   if (tile->size_bytes() != info.bytes ||
       checksum(&tile->header(), tile->size_bytes()) != info.surface_checksum) {
-    return Error{fmt::format("{}: content does not match its checksum in map.yaml: import the map "
-                             "again",
-                             path.string())};
+    return Error{
+        fmt::format("{}: content does not match its checksum in map.yaml: import the map "
+                    "again",
+                    path.string())};
   }
   tiles_.push_back({number, std::make_unique<Tile>(std::move(*tile))});
   slots_[static_cast<std::size_t>(info.iy - low_iy_) * width_ + info.ix - low_ix_] =
@@ -136,8 +138,7 @@ Result<std::vector<Eigen::Vector3f>> PriorMap::read_tile_points(const std::files
 
 Status PriorMap::verify(const std::filesystem::path& dir, const MapInfo& info) {
   for (const TileInfo& tile : info.tiles) {
-    auto surfaces =
-        read_checked(dir / (tile.stem() + ".tile"), tile.bytes, tile.surface_checksum);
+    auto surfaces = read_checked(dir / (tile.stem() + ".tile"), tile.bytes, tile.surface_checksum);
     if (!surfaces) return surfaces.error();
     if (auto points = read_point_file(dir, tile); !points) return points.error();
   }

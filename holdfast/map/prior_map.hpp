@@ -77,7 +77,8 @@ class PriorMap {
   std::filesystem::path dir_;
   MapInfo info_;
   std::vector<Loaded> tiles_;
-  std::vector<const Tile*> slots_;  ///< dense grid over the map's tiles; nullptr: none or not loaded
+  std::vector<const Tile*>
+      slots_;  ///< dense grid over the map's tiles; nullptr: none or not loaded
   int low_ix_ = 0, low_iy_ = 0, width_ = 0, height_ = 0;
   int anchor_ix_ = 0, anchor_iy_ = 0;
   Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();

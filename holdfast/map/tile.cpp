@@ -63,8 +63,8 @@ Status Tile::bind(const std::filesystem::path& path) {
                              kTileVersion)};
   }
   if (h.file_size != size_) {
-    return Error{fmt::format("{}: {} bytes, its header says {}: the file was cut off", path.string(),
-                             size_, h.file_size)};
+    return Error{fmt::format("{}: {} bytes, its header says {}: the file was cut off",
+                             path.string(), size_, h.file_size)};
   }
   for (int i = 0; i < kLevels; ++i) {
     const LevelHeader& from = h.levels[i];

@@ -22,21 +22,22 @@ constexpr int kCellsPerBlock = kBlockCells * kBlockCells * kBlockCells;
 constexpr double kTileSizeM = 32.0;
 
 struct LevelHeader {
-  float cell_m;                 ///< side of a cell; a power of two, so that 32 m is a whole number
-  std::int32_t blocks_xy;       ///< blocks along each horizontal side of the tile
+  float cell_m;            ///< side of a cell; a power of two, so that 32 m is a whole number
+  std::int32_t blocks_xy;  ///< blocks along each horizontal side of the tile
   std::int32_t blocks_z;
-  std::int32_t z_block;         ///< number of the lowest block: its floor is z_block * 8 * cell_m
+  std::int32_t z_block;  ///< number of the lowest block: its floor is z_block * 8 * cell_m
   std::uint32_t block_count;
   std::uint32_t surface_count;
-  std::uint64_t index_offset;   ///< std::uint32_t[blocks_z][blocks_xy][blocks_xy]
-  std::uint64_t blocks_offset;  ///< std::uint32_t[block_count][512]
+  std::uint64_t index_offset;     ///< std::uint32_t[blocks_z][blocks_xy][blocks_xy]
+  std::uint64_t blocks_offset;    ///< std::uint32_t[block_count][512]
   std::uint64_t surfaces_offset;  ///< Surface[surface_count]
 };
 
 struct TileHeader {
   std::uint32_t magic;
   std::uint32_t version;
-  std::int32_t ix, iy;  ///< the tile covers [ix, ix+1) x [iy, iy+1) times 32 m, from the map's origin
+  std::int32_t ix,
+      iy;  ///< the tile covers [ix, ix+1) x [iy, iy+1) times 32 m, from the map's origin
   std::uint64_t file_size;
   std::array<LevelHeader, kLevels> levels;
 };

@@ -77,8 +77,7 @@ bool add_scan(const Scan& scan, const std::vector<SE3>& T_map_lidar,
 Result<Accumulated> accumulate(SensorSource& log, const std::vector<StampedPose>& poses,
                                const SE3& T_body_lidar,
                                const preprocess::ScanSelectionConfig& selection,
-                               io::PointCloud& cloud,
-                               const std::function<void(double)>& progress) {
+                               io::PointCloud& cloud, const std::function<void(double)>& progress) {
   Accumulated result;
   OccupiedCells cells;
   if (cloud.points.empty() && !poses.empty() &&

@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "holdfast/core/sensor_data.hpp"
 #include "holdfast/core/se3.hpp"
+#include "holdfast/core/sensor_data.hpp"
 #include "holdfast/io/point_cloud.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 
@@ -17,8 +17,8 @@ struct Accumulated {
 
 /// Adds the scans of a log to `cloud` in the map frame, each point at the pose of its own time
 /// (between the neighbouring poses of `T_map_body`, ascending). Of points nearer than 5 cm to one
-/// another (in one cell of that size) the first stays. Gaps of more than 0.5 s between poses are not
-/// bridged.
+/// another (in one cell of that size) the first stays. Gaps of more than 0.5 s between poses are
+/// not bridged.
 Result<Accumulated> accumulate(SensorSource& log, const std::vector<StampedPose>& poses,
                                const SE3& T_body_lidar,
                                const preprocess::ScanSelectionConfig& selection,

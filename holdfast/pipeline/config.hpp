@@ -51,15 +51,14 @@ struct Config {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("T_body_lidar", self.T_body_lidar,
-          FieldDoc{"pose of the LiDAR in the body frame (the IMU's): x, y, z in m, then qx, qy, qz, "
-                   "qw; required"},
-          &self.has_T_body_lidar);
+    visit(
+        "T_body_lidar", self.T_body_lidar,
+        FieldDoc{"pose of the LiDAR in the body frame (the IMU's): x, y, z in m, then qx, qy, qz, "
+                 "qw; required"},
+        &self.has_T_body_lidar);
     visit("method", self.method,
-          FieldDoc{"localizer",
-                   -std::numeric_limits<double>::infinity(),
-                   std::numeric_limits<double>::infinity(),
-                   "map_filter"});
+          FieldDoc{"localizer", -std::numeric_limits<double>::infinity(),
+                   std::numeric_limits<double>::infinity(), "map_filter"});
   }
 };
 

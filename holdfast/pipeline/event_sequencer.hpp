@@ -7,8 +7,8 @@
 namespace holdfast::pipeline {
 
 /// Puts sensor events into the order in which a Localizer wants them: a scan waits until an IMU
-/// reading at or after its last point has come. When the IMU has stopped, the scan is let go once the
-/// log has moved on by `patience` past its end.
+/// reading at or after its last point has come. When the IMU has stopped, the scan is let go once
+/// the log has moved on by `patience` past its end.
 class EventSequencer {
  public:
   explicit EventSequencer(TimeNs patience = kSecond / 10) : patience_(patience) {}

@@ -8,10 +8,10 @@
 
 namespace holdfast::pipeline {
 
-Result<std::string> map_view_json(const std::filesystem::path& map_dir,
-                                  const map::MapInfo& info) {
+Result<std::string> map_view_json(const std::filesystem::path& map_dir, const map::MapInfo& info) {
   constexpr std::uint64_t kMostPoints = 40'000;
-  const std::uint64_t step = std::max<std::uint64_t>(1, (info.points + kMostPoints - 1) / kMostPoints);
+  const std::uint64_t step =
+      std::max<std::uint64_t>(1, (info.points + kMostPoints - 1) / kMostPoints);
   std::string text = "{\"points\": [";
   std::uint64_t number = 0;
   bool first = true;

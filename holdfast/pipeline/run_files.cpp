@@ -37,12 +37,12 @@ std::string steps_header() {
 }
 
 std::string format_step(const StepReport& r) {
-  std::string line = fmt::format(
-      "{},{},{},{},{},{},{:.4f},{:.5f},{},{:.6f},{:.7f},{},{:.4f}", format_seconds(r.stamp),
-      format_seconds(r.pose_time), to_string(r.state), csv_text(r.reason),
-      r.p_wrong < 0 ? "" : fmt::format("{:.3g}", r.p_wrong), r.matches, r.inlier_share,
-      r.mean_abs_residual_m, weak_text(r), r.sigma_trans_m, r.sigma_rot_rad, r.odom_epoch,
-      r.times.total_ms);
+  std::string line =
+      fmt::format("{},{},{},{},{},{},{:.4f},{:.5f},{},{:.6f},{:.7f},{},{:.4f}",
+                  format_seconds(r.stamp), format_seconds(r.pose_time), to_string(r.state),
+                  csv_text(r.reason), r.p_wrong < 0 ? "" : fmt::format("{:.3g}", r.p_wrong),
+                  r.matches, r.inlier_share, r.mean_abs_residual_m, weak_text(r), r.sigma_trans_m,
+                  r.sigma_rot_rad, r.odom_epoch, r.times.total_ms);
   for (const double ms : r.times.ms) line += fmt::format(",{:.4f}", ms);
   return line;
 }

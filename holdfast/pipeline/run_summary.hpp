@@ -24,7 +24,7 @@ class RunSummary {
   struct About {
     std::string method, log, map, map_identity;
     int threads = 1;
-    double elapsed_s = 0;  ///< wall time of the whole run
+    double elapsed_s = 0;                                         ///< wall time of the whole run
     std::vector<std::pair<std::string, std::uint64_t>> counters;  ///< what the log survived
     std::vector<std::string> warnings;
   };

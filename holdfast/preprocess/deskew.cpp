@@ -25,12 +25,10 @@ MeanReading mean_of(const ImuSample& a, const ImuSample& b, const EndState& end)
 /// The state `dt` seconds before `k` (dt >= 0) at constant body rate and acceleration.
 Kinematics step_back(const Kinematics& k, const MeanReading& reading, const EndState& end,
                      double dt) {
-  const Eigen::Quaterniond middle =
-      k.T_end_body.rotation * so3::exp(-0.5 * dt * reading.gyro);
+  const Eigen::Quaterniond middle = k.T_end_body.rotation * so3::exp(-0.5 * dt * reading.gyro);
   const Eigen::Vector3d acceleration = middle * reading.accel + end.gravity_end;
   Kinematics before;
-  before.T_end_body.rotation =
-      (k.T_end_body.rotation * so3::exp(-dt * reading.gyro)).normalized();
+  before.T_end_body.rotation = (k.T_end_body.rotation * so3::exp(-dt * reading.gyro)).normalized();
   before.T_end_body.translation =
       k.T_end_body.translation - dt * k.velocity + 0.5 * dt * dt * acceleration;
   before.velocity = k.velocity - dt * acceleration;
@@ -49,8 +47,8 @@ void ScanMotion::set_poses(const ImuSegment& imu, const EndState& end, TimeNs st
     const TimeNs t = stamp + (end_time - stamp) * k / (kKnots - 1);
     while (i > 0 && imu.samples[i - 1].t >= t) {
       reading = mean_of(imu.samples[i - 1], imu.samples[i], end);
-      at_sample = step_back(at_sample, reading, end,
-                            to_seconds(imu.samples[i].t - imu.samples[i - 1].t));
+      at_sample =
+          step_back(at_sample, reading, end, to_seconds(imu.samples[i].t - imu.samples[i - 1].t));
       --i;
     }
     if (i > 0) reading = mean_of(imu.samples[i - 1], imu.samples[i], end);
@@ -76,8 +74,7 @@ void ScanMotion::set(const ImuSegment& imu, const EndState& end, const SE3& T_bo
     // Central difference inside, one-sided at both ends.
     const std::size_t a = k == 0 ? 0 : k - 1;
     const std::size_t b = k == last ? last : k + 1;
-    const Eigen::Matrix<double, 3, 4> change =
-        (matrix(b) - matrix(a)) / static_cast<double>(b - a);
+    const Eigen::Matrix<double, 3, 4> change = (matrix(b) - matrix(a)) / static_cast<double>(b - a);
     knots_[k].R = here.leftCols<3>().cast<float>();
     knots_[k].t = here.col(3).cast<float>();
     knots_[k].dR = change.leftCols<3>().cast<float>();

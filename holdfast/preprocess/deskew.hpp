@@ -21,11 +21,11 @@ struct EndState {
 
 /// Motion of the body during one scan, relative to its pose at the last point's time.
 ///
-/// Article 3.1.2 deskews to the first point with the inverse of the motion (its print); ours moves a
-/// point by T_end_body(t_i) * T_body_lidar to the *last* point's time, the freshest pose a robot can
-/// be given. The IMU is integrated backwards from the end state with the midpoint rule; poses stand at
-/// 64 knots and a point is moved from the nearest one to first order (at 3 rad/s and 50 m the
-/// remainder is below 0.2 mm).
+/// Article 3.1.2 deskews to the first point with the inverse of the motion (its print); ours moves
+/// a point by T_end_body(t_i) * T_body_lidar to the *last* point's time, the freshest pose a robot
+/// can be given. The IMU is integrated backwards from the end state with the midpoint rule; poses
+/// stand at 64 knots and a point is moved from the nearest one to first order (at 3 rad/s and 50 m
+/// the remainder is below 0.2 mm).
 class ScanMotion {
  public:
   /// `imu` covers [stamp, end]; `T_body_lidar` is the extrinsic calibration.

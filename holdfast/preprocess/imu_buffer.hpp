@@ -11,7 +11,8 @@ namespace holdfast::preprocess {
 /// IMU readings over a span of time, with a reading exactly at each end.
 struct ImuSegment {
   std::vector<ImuSample> samples;  ///< ascending; at least two when the span is not empty
-  TimeNs held_ns = 0;  ///< length of the span that no measurement covers: the nearest reading is held
+  TimeNs held_ns =
+      0;  ///< length of the span that no measurement covers: the nearest reading is held
   TimeNs longest_gap_ns = 0;  ///< longest time between neighbouring readings inside the span
 };
 
@@ -27,7 +28,8 @@ class ImuBuffer {
   TimeNs latest() const { return samples_.empty() ? INT64_MIN : samples_.back().t; }
 
   /// Readings from `begin` to `end`, linearly interpolated at both ends. Outside of what was
-  /// measured the nearest reading is held. `out` keeps its memory. Returns false without any reading.
+  /// measured the nearest reading is held. `out` keeps its memory. Returns false without any
+  /// reading.
   bool segment(TimeNs begin, TimeNs end, ImuSegment& out) const;
 
   /// Forgets readings that no segment from `t` on can need.

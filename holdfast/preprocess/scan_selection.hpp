@@ -19,15 +19,15 @@ struct ScanSelectionConfig {
           FieldDoc{"nearer returns are dropped (the robot itself)", 0.0, 100.0});
     visit("max_range_m", self.max_range_m, FieldDoc{"farther returns are dropped", 1.0, 1000.0});
     visit("max_points", self.max_points,
-          FieldDoc{"points of a scan that are matched with the map, spread over the whole scan", 100,
-                   1000000});
+          FieldDoc{"points of a scan that are matched with the map, spread over the whole scan",
+                   100, 1000000});
   }
 };
 
 /// Chooses the points of a scan to work with: indices in ascending order into `scan.points`. Where
-/// there are more than `max_points`, one of each run of neighbours is taken at a place drawn anew for
-/// each run and `scan_number` (same number, same choice), so that no beam of a regular pattern is
-/// favoured. Returns the number of points inside the limits of range. `out` keeps its memory.
+/// there are more than `max_points`, one of each run of neighbours is taken at a place drawn anew
+/// for each run and `scan_number` (same number, same choice), so that no beam of a regular pattern
+/// is favoured. Returns the number of points inside the limits of range. `out` keeps its memory.
 std::size_t select_points(const Scan& scan, const ScanSelectionConfig& config,
                           std::uint64_t scan_number, std::vector<std::uint32_t>& out);
 

@@ -32,8 +32,8 @@ struct Query {
     return coarse.surface == nullptr ? Choice{} : choose_in_cell(p, coarse);
   }
 
-  /// The nearest plane of a cell, unless the point may as well belong to the next one: a wrong plane
-  /// at an edge is worse than none.
+  /// The nearest plane of a cell, unless the point may as well belong to the next one: a wrong
+  /// plane at an edge is worse than none.
   Choice choose_in_cell(const Eigen::Vector3f& p, const map::PriorMap::Hit& hit) const {
     const Eigen::Vector3f in_tile = p - hit.corner;
     Choice best;

@@ -9,8 +9,9 @@
 
 namespace holdfast::registration {
 
-/// The points of a scan that are to be matched: deskewed to the last point's time, in the body frame
-/// of that time (metres), with the age of each point (seconds, <= 0: before the end of the scan).
+/// The points of a scan that are to be matched: deskewed to the last point's time, in the body
+/// frame of that time (metres), with the age of each point (seconds, <= 0: before the end of the
+/// scan).
 struct BodyPoints {
   std::vector<Eigen::Vector3f> points;
   std::vector<float> age_s;
@@ -38,12 +39,12 @@ struct Correspondences {
 
 /// How a point's plane is chosen and how well its distance is known.
 struct AssociationOptions {
-  int level = 0;               ///< resolution of the map that is asked first
-  bool coarser_if_none = true; ///< ask the next coarser level where this one has nothing
-  float gate_m = 0.3F;         ///< farther planes are no correspondence
-  float range_sigma_m = 0.02F; ///< of the LiDAR along the ray
-  float surface_sigma_m = 0.003F; ///< least error of a plane, added to its own thickness
-  float ambiguity_sigmas = 3.0F;  ///< a point this near to a second plane of its cell is left out
+  int level = 0;                   ///< resolution of the map that is asked first
+  bool coarser_if_none = true;     ///< ask the next coarser level where this one has nothing
+  float gate_m = 0.3F;             ///< farther planes are no correspondence
+  float range_sigma_m = 0.02F;     ///< of the LiDAR along the ray
+  float surface_sigma_m = 0.003F;  ///< least error of a plane, added to its own thickness
+  float ambiguity_sigmas = 3.0F;   ///< a point this near to a second plane of its cell is left out
 };
 
 /// Pairs each point with the nearest plane of its cell at the pose `T_anchor_body` (article 3.2.2

@@ -11,7 +11,7 @@ using Load = Eigen::Map<const Lane>;
 /// Products of the Jacobian [n, m, age n] with itself, where m = q x (R^T n): the blocks of H that
 /// are not copies of each other.
 struct LaneSums {
-  Lane nn[6], nm[9], mm[6];          // H of position and rotation
+  Lane nn[6], nm[9], mm[6];               // H of position and rotation
   Lane nn_age[6], nm_age[9], nn_age2[6];  // and of velocity
   Lane n_r[3], m_r[3], n_r_age[3];
   Lane cost, weight, abs_residual, pairs;

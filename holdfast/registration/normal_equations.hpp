@@ -20,18 +20,18 @@ using Vector9d = Eigen::Matrix<double, kUnknowns, 1>;
 struct NormalEquations {
   Matrix9d H = Matrix9d::Zero();
   Vector9d g = Vector9d::Zero();
-  double cost = 0;         ///< sum of squared whitened residuals, bounded by the robust loss
-  double weight = 0;       ///< sum of robust weights: how many pairs are believed
-  double abs_residual = 0; ///< sum of weight * |distance|, m
-  double pairs = 0;        ///< pairs within the gate
+  double cost = 0;          ///< sum of squared whitened residuals, bounded by the robust loss
+  double weight = 0;        ///< sum of robust weights: how many pairs are believed
+  double abs_residual = 0;  ///< sum of weight * |distance|, m
+  double pairs = 0;         ///< pairs within the gate
 
   NormalEquations& operator+=(const NormalEquations& other);
 };
 
 /// Point-to-plane residuals r = n . (R q + p) - offset (article 3.2.2, r_F) at the pose
 /// `T_anchor_body`, with the Geman-McClure loss: a pair k sigmas off has weight
-/// (c^2 / (c^2 + k^2))^2, where c = `robust_scale`. Partial sums of fixed chunks are added in order:
-/// the bits do not depend on the number of threads.
+/// (c^2 / (c^2 + k^2))^2, where c = `robust_scale`. Partial sums of fixed chunks are added in
+/// order: the bits do not depend on the number of threads.
 NormalEquations linearise(const Correspondences& pairs, const SE3& T_anchor_body,
                           double robust_scale, WorkerPool& pool,
                           std::vector<NormalEquations>& partials);

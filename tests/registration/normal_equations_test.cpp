@@ -57,8 +57,9 @@ TEST_P(AtRotation, GradientIsHalfTheDerivativeOfTheRobustCost) {
   constexpr double kStep = 1e-3;
   const double scale = e.g.head<6>().norm();
   for (int axis = 0; axis < 6; ++axis) {
-    const double numeric = (at(pairs, moved(pose, axis, kStep)).cost -
-                            at(pairs, moved(pose, axis, -kStep)).cost) / (2 * kStep);
+    const double numeric =
+        (at(pairs, moved(pose, axis, kStep)).cost - at(pairs, moved(pose, axis, -kStep)).cost) /
+        (2 * kStep);
     EXPECT_NEAR(2 * e.g[axis], numeric, 0.02 * scale) << "axis " << axis;
   }
 }
@@ -75,8 +76,7 @@ TEST_P(AtRotation, OneStepReachesTheExactPoseOfNoiseFreePairs) {
   SE3 pose = moved(moved(truth, 0, 0.01), 4, 0.003);
   for (int k = 0; k < 8; ++k) {
     const NormalEquations e = at(pairs, pose);
-    const Eigen::Matrix<double, 6, 1> d =
-        -e.H.topLeftCorner<6, 6>().ldlt().solve(e.g.head<6>());
+    const Eigen::Matrix<double, 6, 1> d = -e.H.topLeftCorner<6, 6>().ldlt().solve(e.g.head<6>());
     pose.translation += d.head<3>();
     pose.rotation = (pose.rotation * so3::exp(d.tail<3>())).normalized();
   }

@@ -1,4 +1,4 @@
-#include "holdfast/map/tile_builder.hpp"
+#include "holdfast/map/fitting/tile_builder.hpp"
 
 #include <algorithm>
 #include <cmath>

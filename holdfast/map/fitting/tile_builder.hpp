@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "holdfast/map/surface_fit.hpp"
+#include "holdfast/map/fitting/surface_fit.hpp"
 #include "holdfast/map/tile_format.hpp"
 
 namespace holdfast::map {

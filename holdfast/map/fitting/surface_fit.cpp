@@ -1,4 +1,4 @@
-#include "holdfast/map/surface_fit.hpp"
+#include "holdfast/map/fitting/surface_fit.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -37,7 +37,7 @@ Principal principal_of(const Moments& m) {
 }
 
 struct Plane {
-  Eigen::Vector3d point;   ///< relative to the neighbourhood's centre
+  Eigen::Vector3d point;  ///< relative to the neighbourhood's centre
   Eigen::Vector3d normal;
   double sigma_m;
   double spread_m;  ///< RMS extent along the shorter of its two axes
@@ -97,7 +97,7 @@ struct Neighbourhood {
 };
 
 constexpr std::size_t kPointsPerCell = 24;  // more in one cell tell nothing new
-constexpr double kOwnMargin = 0.2;         // around a cell, as a share of its side
+constexpr double kOwnMargin = 0.2;          // around a cell, as a share of its side
 
 Neighbourhood gather(const PointGrid& grid, const Cell& cell, const FitOptions& options) {
   Neighbourhood n;
@@ -139,9 +139,12 @@ std::uint16_t saturated(double support) {
 Surface surface_of(const Plane& plane, const Eigen::Vector3d& center) {
   // The centre lies on the plane at the foot of the perpendicular from the cell's centroid.
   const Eigen::Vector3d foot = plane.normal * plane.normal.dot(plane.point);
-  return {(center + foot).cast<float>(), plane.normal.cast<float>(),
-          static_cast<float>(plane.sigma_m), saturated(plane.support * plane.density),
-          SurfaceKind::kPlane, 0};
+  return {(center + foot).cast<float>(),
+          plane.normal.cast<float>(),
+          static_cast<float>(plane.sigma_m),
+          saturated(plane.support * plane.density),
+          SurfaceKind::kPlane,
+          0};
 }
 
 /// The widest neighbourhood that is one plane.
@@ -153,9 +156,9 @@ std::optional<Plane> single_plane(const Neighbourhood& n, double cell_m,
   wide->density = n.density / (options.wide_radius * options.wide_radius);
   if (narrow) narrow->density = n.density / (options.narrow_radius * options.narrow_radius);
   if (!narrow) return is_flat(*wide, options) ? wide : std::nullopt;
-  const bool wide_is_as_flat =
-      is_flat(*wide, options) && 4 * wide->support > 3 * static_cast<int>(n.all.size()) &&
-      wide->sigma_m < 1.2 * narrow->sigma_m + 0.1 * options.noise_m;
+  const bool wide_is_as_flat = is_flat(*wide, options) &&
+                               4 * wide->support > 3 * static_cast<int>(n.all.size()) &&
+                               wide->sigma_m < 1.2 * narrow->sigma_m + 0.1 * options.noise_m;
   if (wide_is_as_flat) return wide;
   if (is_flat(*narrow, options) && narrow->support > static_cast<int>(n.own.size())) return narrow;
   return std::nullopt;
@@ -178,12 +181,13 @@ Offsets sample(const Offsets& points, std::size_t most) {
 
 int count_near(const Offsets& points, const Plane& plane, double band_m) {
   int count = 0;
-  for (const auto& d : points) count += std::abs(plane.normal.dot(d - plane.point)) < band_m ? 1 : 0;
+  for (const auto& d : points)
+    count += std::abs(plane.normal.dot(d - plane.point)) < band_m ? 1 : 0;
   return count;
 }
 
-/// The plane through three points, two of them the cell's own, that has most points near it; a fixed
-/// set of triples, so that the same map always gives the same fits.
+/// The plane through three points, two of them the cell's own, that has most points near it; a
+/// fixed set of triples, so that the same map always gives the same fits.
 std::optional<Plane> best_of_triples(const Offsets& own, const Offsets& all,
                                      const FitOptions& options) {
   constexpr int kTriples = 20;
@@ -211,8 +215,8 @@ void remove_near(Offsets& points, const Plane& plane, double band_m) {
   });
 }
 
-// A plane with less of the support of the strongest one in its cell is a ghost of it: a wall smeared
-// by the poses that the map was made with.
+// A plane with less of the support of the strongest one in its cell is a ghost of it: a wall
+// smeared by the poses that the map was made with.
 constexpr double kGhostShare = 0.35;
 
 /// Edges, corners and thin walls: planes one after the other, each from the points that the ones
@@ -224,8 +228,9 @@ void several_planes(const Neighbourhood& n, double cell_m, const FitOptions& opt
   Offsets own = n.own;
   Offsets all = within(n.all, radius * cell_m);
   int strongest = 0;
-  for (int k = 0; k < kMostPlanes && own.size() >= 3 &&
-                  static_cast<int>(all.size()) >= options.min_support; ++k) {
+  for (int k = 0;
+       k < kMostPlanes && own.size() >= 3 && static_cast<int>(all.size()) >= options.min_support;
+       ++k) {
     const auto seed = best_of_triples(own, all, options);
     if (!seed) return;
     auto plane = plane_through(near_plane(all, *seed, 3.0 * options.noise_m), options.min_support);
@@ -254,8 +259,7 @@ void line_through(const Neighbourhood& n, double cell_m, const FitOptions& optio
   const Eigen::Vector3d direction = p.axes.col(2);
   const Eigen::Vector3d foot = p.centroid - direction * direction.dot(p.centroid);
   out.push_back({(n.center + foot).cast<float>(), direction.cast<float>(),
-                 static_cast<float>(sigma),
-                 saturated(m.count * n.density), SurfaceKind::kLine, 0});
+                 static_cast<float>(sigma), saturated(m.count * n.density), SurfaceKind::kLine, 0});
 }
 
 }  // namespace

@@ -3,17 +3,17 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "holdfast/map/point_grid.hpp"
+#include "holdfast/map/fitting/point_grid.hpp"
 #include "holdfast/map/surface.hpp"
 
 namespace holdfast::map {
 
-/// How surfaces are fitted to the points around a cell. Lengths that have to do with the sensor come
-/// from the map itself (noise_m), those that have to do with shape are shares of the cell.
+/// How surfaces are fitted to the points around a cell. Lengths that have to do with the sensor
+/// come from the map itself (noise_m), those that have to do with shape are shares of the cell.
 struct FitOptions {
-  double noise_m = 0.01;      ///< RMS distance of points to a plane where the world is a plane
-  double wide_radius = 2.0;   ///< of the neighbourhood tried first, in cells
-  double narrow_radius = 1.0; ///< of the neighbourhood where the wide one is no plane, in cells
+  double noise_m = 0.01;       ///< RMS distance of points to a plane where the world is a plane
+  double wide_radius = 2.0;    ///< of the neighbourhood tried first, in cells
+  double narrow_radius = 1.0;  ///< of the neighbourhood where the wide one is no plane, in cells
   int min_support = 6;
   bool planes = true;
   bool lines = true;
@@ -26,8 +26,8 @@ struct FitOptions {
 void fit_cell(const PointGrid& grid, const Cell& cell, const FitOptions& options,
               std::vector<Surface>& out);
 
-/// RMS distance to the plane fitted to the wide neighbourhood of `cell`; < 0 where there are too few
-/// points. For the estimate of a map's noise.
+/// RMS distance to the plane fitted to the wide neighbourhood of `cell`; < 0 where there are too
+/// few points. For the estimate of a map's noise.
 double plane_thickness(const PointGrid& grid, const Cell& cell, const FitOptions& options);
 
 }  // namespace holdfast::map
