@@ -61,7 +61,7 @@ std::vector<Vector3d> landmarks() {
   std::vector<Vector3d> result;
   for (int k = 0; k < 200; ++k) {
     const double a = 2 * M_PI * k / 200;
-    result.emplace_back(16 * std::cos(a), 16 * std::sin(a), 0.013 + 0.0107 * k);
+    result.emplace_back(16 * std::cos(a) + 0.017, 16 * std::sin(a) + 0.023, 0.013 + 0.0107 * k);
   }
   return result;
 }
