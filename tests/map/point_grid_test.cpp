@@ -1,4 +1,4 @@
-#include "holdfast/map/point_grid.hpp"
+#include "holdfast/map/fitting/point_grid.hpp"
 
 #include <gtest/gtest.h>
 

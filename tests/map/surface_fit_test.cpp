@@ -1,4 +1,4 @@
-#include "holdfast/map/surface_fit.hpp"
+#include "holdfast/map/fitting/surface_fit.hpp"
 
 #include <gtest/gtest.h>
 
