@@ -56,8 +56,17 @@ Result<PriorMap> PriorMap::open(const std::filesystem::path& dir) {
     high_iy = std::max(high_iy, tile.iy);
   }
   if (map.info_.tiles.empty()) return Error{fmt::format("{}: a map without tiles", dir.string())};
-  map.width_ = high_ix - map.low_ix_ + 1;
-  map.height_ = high_iy - map.low_iy_ + 1;
+  // In 64 bits: a damaged map.yaml may hold any number.
+  const std::int64_t width = std::int64_t{high_ix} - map.low_ix_ + 1;
+  const std::int64_t height = std::int64_t{high_iy} - map.low_iy_ + 1;
+  constexpr std::int64_t kMostSlots = 16'000'000;
+  if (width > kMostSlots || height > kMostSlots || width * height > kMostSlots) {
+    return Error{
+        fmt::format("{}: its tiles span {} x {} tiles, at most {} expected: is {} damaged?",
+                    dir.string(), width, height, kMostSlots, kMapFileName)};
+  }
+  map.width_ = static_cast<int>(width);
+  map.height_ = static_cast<int>(height);
   map.slots_.assign(static_cast<std::size_t>(map.width_) * map.height_, nullptr);
   return map;
 }
@@ -94,7 +103,7 @@ Status PriorMap::focus(const Eigen::Vector3d& p_map, double radius_m) {
   const int ix = static_cast<int>(std::floor(local.x() / kTileSizeM));
   const int iy = static_cast<int>(std::floor(local.y() / kTileSizeM));
   if (focused_ && ix == anchor_ix_ && iy == anchor_iy_) return Done{};
-  focused_ = true;
+  focused_ = false;  // until all tiles are there
   anchor_ix_ = ix;
   anchor_iy_ = iy;
   anchor_ = info_.origin + Eigen::Vector3d(ix * kTileSizeM, iy * kTileSizeM, 0);
@@ -111,6 +120,7 @@ Status PriorMap::focus(const Eigen::Vector3d& p_map, double radius_m) {
     if (slots_[static_cast<std::size_t>(info.iy - low_iy_) * width_ + info.ix - low_ix_]) continue;
     if (auto loaded = load(i); !loaded) return loaded;
   }
+  focused_ = true;
   return Done{};
 }
 

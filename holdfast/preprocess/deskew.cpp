@@ -42,7 +42,8 @@ void ScanMotion::set_poses(const ImuSegment& imu, const EndState& end, TimeNs st
   poses_.resize(kKnots);
   Kinematics at_sample{SE3{}, end.v_end};
   std::size_t i = imu.samples.size() - 1;  // at_sample stands at the time of sample i
-  MeanReading reading{};
+  // With a single reading no interval is left, and every knot is the end.
+  MeanReading reading{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   for (int k = kKnots - 1; k >= 0; --k) {
     const TimeNs t = stamp + (end_time - stamp) * k / (kKnots - 1);
     while (i > 0 && imu.samples[i - 1].t >= t) {
