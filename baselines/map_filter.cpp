@@ -22,8 +22,12 @@ constexpr float kCoarseSurfaceSigmaM = 0.05F;  // while coarse planes are matche
 std::vector<Eigen::Vector3d> weak_directions(const registration::Matrix9d& H, double sigma) {
   const Eigen::Matrix3d pr = H.block<3, 3>(kPosition, kRotation);
   const Eigen::Matrix3d rr = H.block<3, 3>(kRotation, kRotation);
-  const Eigen::Matrix3d information =
+  Eigen::Matrix3d information =
       H.block<3, 3>(kPosition, kPosition) - pr * rr.ldlt().solve(pr.transpose());
+  // Normals are off by some milliradians, which gives every direction a share of the information of
+  // the others that the scene does not hold.
+  constexpr double kNormalSigma = 0.005;
+  information -= kNormalSigma * kNormalSigma * information.trace() * Eigen::Matrix3d::Identity();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information);
   std::vector<Eigen::Vector3d> weak;
   for (int i = 0; i < 3; ++i) {
