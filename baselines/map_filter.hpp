@@ -2,11 +2,21 @@
 
 #include <optional>
 
-#include "baselines/initial_alignment.hpp"
 #include "holdfast/core/step_report.hpp"
+#include "holdfast/filter/initial_alignment.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 
 namespace holdfast::baselines {
+
+using filter::FilterState;
+using filter::ImuNoiseConfig;
+using filter::InitialUncertainty;
+using filter::Matrix15d;
+using filter::SelectedScan;
+using filter::StartCandidate;
+using filter::UpdateOptions;
+using filter::UpdateResult;
+using filter::UpdateWorkspace;
 
 struct MapFilterConfig {
   double surface_sigma_m = 0.004;

@@ -9,8 +9,8 @@
 namespace holdfast::benchmarks {
 namespace {
 
-using baselines::FilterState;
 using baselines::MapFilter;
+using filter::FilterState;
 
 /// As pipeline::Localizer sets it up; a test compares their poses.
 MapFilter::Setup setup_of(const pipeline::Config& config) {
@@ -33,7 +33,7 @@ class Repeater {
 
   void fill(const Scan& scan, FilterState state, std::uint64_t scan_number, FilteredScan& out) {
     filter_.imu().segment(state.t, scan.end_time, imu_);
-    baselines::propagate(state, imu_, gravity_, setup_.imu);
+    filter::propagate(state, imu_, gravity_, setup_.imu);
     out.predicted.T_map_body = state.T_map_body;
     out.predicted.information = state.P.topLeftCorner<6, 6>().inverse();
     preprocess::select_points(scan, setup_.selection, scan_number, selected_);

@@ -44,7 +44,7 @@ struct Config {
   bool has_T_body_lidar = false;
   std::string method = "map_filter";
   LidarConfig lidar;
-  baselines::ImuNoiseConfig imu;
+  filter::ImuNoiseConfig imu;
   StartConfig start;
   preprocess::ScanSelectionConfig preprocess;
   baselines::MapFilterConfig map_filter;

@@ -4,12 +4,12 @@
 
 #include <numbers>
 
-#include "tests/baselines/box_room.hpp"
+#include "tests/filter/box_room.hpp"
 
 namespace holdfast::baselines {
 namespace {
 
-using namespace testing;
+using namespace filter::testing;
 
 // A scan of 7200 points with 20 mm noise, in a map with 5 mm: about a millimetre. The article's
 // promise for a whole drive is 20 mm.

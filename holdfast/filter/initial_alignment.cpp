@@ -1,10 +1,10 @@
-#include "baselines/initial_alignment.hpp"
+#include "holdfast/filter/initial_alignment.hpp"
 
 #include <algorithm>
 #include <array>
 #include <functional>
 
-namespace holdfast::baselines {
+namespace holdfast::filter {
 namespace {
 
 /// One resolution of the descent.
@@ -245,4 +245,4 @@ std::vector<StartCandidate> align_initially(const map::PriorMap& map, const Sele
   return starts;
 }
 
-}  // namespace holdfast::baselines
+}  // namespace holdfast::filter

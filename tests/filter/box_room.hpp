@@ -3,13 +3,13 @@
 #include <functional>
 #include <memory>
 
-#include "baselines/scan_update.hpp"
 #include "holdfast/core/random.hpp"
+#include "holdfast/filter/scan_update.hpp"
 #include "tests/map/built_map.hpp"
 #include "tests/map/clouds.hpp"
 
 /// A room that is a box, its map, and what a LiDAR of 16 beams sees in it in closed form.
-namespace holdfast::baselines::testing {
+namespace holdfast::filter::testing {
 
 using Eigen::Vector3d;
 
@@ -134,4 +134,4 @@ inline double angle_error(const FilterState& state, const SE3& truth) {
   return so3::angle_between(state.T_map_body.rotation, truth.rotation);
 }
 
-}  // namespace holdfast::baselines::testing
+}  // namespace holdfast::filter::testing

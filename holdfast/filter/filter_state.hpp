@@ -6,7 +6,7 @@
 #include "holdfast/core/se3.hpp"
 #include "holdfast/preprocess/imu_buffer.hpp"
 
-namespace holdfast::baselines {
+namespace holdfast::filter {
 
 /// Noise of the IMU as continuous-time densities. The defaults are ten times those of the article
 /// (3.1.1): they stand for an unknown IMU on a vehicle, with vibration, scale and timing errors
@@ -58,4 +58,4 @@ struct FilterState {
 void propagate(FilterState& state, const preprocess::ImuSegment& imu,
                const Eigen::Vector3d& gravity, const ImuNoiseConfig& noise);
 
-}  // namespace holdfast::baselines
+}  // namespace holdfast::filter

@@ -1,13 +1,13 @@
-#include "baselines/scan_update.hpp"
+#include "holdfast/filter/scan_update.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 #include <numbers>
 
-#include "tests/baselines/box_room.hpp"
+#include "tests/filter/box_room.hpp"
 
-namespace holdfast::baselines {
+namespace holdfast::filter {
 namespace {
 
 using namespace testing;
@@ -218,4 +218,4 @@ TEST_F(InARoom, AFewWalkersDoNotMoveThePose) {
 }
 
 }  // namespace
-}  // namespace holdfast::baselines
+}  // namespace holdfast::filter

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "baselines/scan_update.hpp"
+#include "holdfast/filter/scan_update.hpp"
 
-namespace holdfast::baselines {
+namespace holdfast::filter {
 
 /// How far off the given pose may be, and how fast the robot may already be.
 struct InitialUncertainty {
@@ -29,4 +29,4 @@ std::vector<StartCandidate> align_initially(const map::PriorMap& map, const Sele
                                             const UpdateOptions& options, WorkerPool& pool,
                                             UpdateWorkspace& work);
 
-}  // namespace holdfast::baselines
+}  // namespace holdfast::filter

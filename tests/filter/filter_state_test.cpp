@@ -1,4 +1,4 @@
-#include "baselines/filter_state.hpp"
+#include "holdfast/filter/filter_state.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "holdfast/core/random.hpp"
 #include "tests/tolerances.hpp"
 
-namespace holdfast::baselines {
+namespace holdfast::filter {
 namespace {
 
 using Eigen::Vector3d;
@@ -257,4 +257,4 @@ TEST(Propagate, AnEmptySpanChangesNothing) {
 }
 
 }  // namespace
-}  // namespace holdfast::baselines
+}  // namespace holdfast::filter

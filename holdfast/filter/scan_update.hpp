@@ -2,14 +2,14 @@
 
 #include <vector>
 
-#include "baselines/filter_state.hpp"
 #include "holdfast/core/parallel.hpp"
 #include "holdfast/core/stage_clock.hpp"
+#include "holdfast/filter/filter_state.hpp"
 #include "holdfast/map/prior_map.hpp"
 #include "holdfast/preprocess/deskew.hpp"
 #include "holdfast/registration/normal_equations.hpp"
 
-namespace holdfast::baselines {
+namespace holdfast::filter {
 
 /// A scan that is ready to be matched: which points, and the readings that its motion follows from.
 struct SelectedScan {
@@ -57,4 +57,4 @@ UpdateResult update_with_scan(const map::PriorMap& map, const SelectedScan& scan
                               WorkerPool& pool, UpdateWorkspace& work, const FilterState& prior,
                               FilterState& state, StageClock* clock);
 
-}  // namespace holdfast::baselines
+}  // namespace holdfast::filter

@@ -1,6 +1,6 @@
-#include "baselines/filter_state.hpp"
+#include "holdfast/filter/filter_state.hpp"
 
-namespace holdfast::baselines {
+namespace holdfast::filter {
 namespace {
 
 using Rows = Eigen::Matrix<double, 3, 15>;
@@ -94,4 +94,4 @@ void propagate(FilterState& state, const preprocess::ImuSegment& imu,
   if (!imu.samples.empty()) state.t = imu.samples.back().t;
 }
 
-}  // namespace holdfast::baselines
+}  // namespace holdfast::filter

@@ -1,11 +1,11 @@
-#include "baselines/scan_update.hpp"
+#include "holdfast/filter/scan_update.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 
-namespace holdfast::baselines {
+namespace holdfast::filter {
 namespace {
 
 using registration::kPosition;
@@ -195,4 +195,4 @@ UpdateResult update_with_scan(const map::PriorMap& map, const SelectedScan& scan
   return Iteration(map, scan, gravity, options, pool, work, prior, state, clock).run();
 }
 
-}  // namespace holdfast::baselines
+}  // namespace holdfast::filter
