@@ -148,6 +148,12 @@ void MapFilter::choose_start(StageClock& clock, StepReport& report) {
 bool MapFilter::predict(TimeNs to, StepReport& report) {
   if (!imu_.segment(state_.t, to, segment_)) return false;
   report.imu_held_ns = segment_.held_ns;
+  const bool holding = segment_.held_ns > filter::kLongestHold;
+  if (holding && !biases_before_hold_) biases_before_hold_ = state_.biases();
+  if (!holding && biases_before_hold_) {
+    state_.set_biases(*biases_before_hold_);
+    biases_before_hold_.reset();
+  }
   propagate(state_, segment_, map_.info().gravity_map, setup_.imu);
   return true;
 }

@@ -1,5 +1,7 @@
 #include "holdfast/filter/filter_state.hpp"
 
+#include <algorithm>
+
 namespace holdfast::filter {
 namespace {
 
@@ -42,6 +44,19 @@ void add_noise(const ImuNoiseConfig& noise, double dt, Matrix15d& P) {
   add(FilterState::kBg, noise.gyro_bias_walk);
 }
 
+/// Noise of an interval in which a reading is held.
+ImuNoiseConfig held_noise(const ImuNoiseConfig& noise, double dt) {
+  constexpr double kRateWander = 1.0;   // rad/s per sqrt(s)
+  constexpr double kForceWander = 3.0;  // m/s^2 per sqrt(s)
+  ImuNoiseConfig held = noise;
+  held.gyro_noise_density = std::max(noise.gyro_noise_density, kRateWander * dt);
+  held.accel_noise_density = std::max(noise.accel_noise_density, kForceWander * dt);
+  if (dt < to_seconds(kLongestHold)) return held;
+  held.gyro_bias_walk = std::max(noise.gyro_bias_walk, kRateWander);
+  held.accel_bias_walk = std::max(noise.accel_bias_walk, kForceWander);
+  return held;
+}
+
 /// One interval between neighbouring readings.
 void step(FilterState& s, const ImuSample& a, const ImuSample& b, const Eigen::Vector3d& gravity,
           const ImuNoiseConfig& noise) {
@@ -70,6 +85,14 @@ void step(FilterState& s, const ImuSample& a, const ImuSample& b, const Eigen::V
 
 }  // namespace
 
+void FilterState::set_biases(const Biases& biases) {
+  accel_bias = biases.accel;
+  gyro_bias = biases.gyro;
+  P.rightCols<6>().setZero();
+  P.bottomRows<6>().setZero();
+  P.bottomRightCorner<6, 6>() = biases.P;
+}
+
 void FilterState::add(const Vector15d& e) {
   T_map_body.translation += e.segment<3>(kP);
   T_map_body.rotation = (T_map_body.rotation * so3::exp(e.segment<3>(kR))).normalized();
@@ -89,7 +112,10 @@ Vector15d FilterState::minus(const FilterState& other) const {
 void propagate(FilterState& state, const preprocess::ImuSegment& imu,
                const Eigen::Vector3d& gravity, const ImuNoiseConfig& noise) {
   for (std::size_t i = 0; i + 1 < imu.samples.size(); ++i) {
-    step(state, imu.samples[i], imu.samples[i + 1], gravity, noise);
+    const ImuSample& a = imu.samples[i];
+    const ImuSample& b = imu.samples[i + 1];
+    const bool held = a.t >= imu.measured_end || b.t <= imu.measured_begin;
+    step(state, a, b, gravity, held ? held_noise(noise, to_seconds(b.t - a.t)) : noise);
   }
   if (!imu.samples.empty()) state.t = imu.samples.back().t;
 }

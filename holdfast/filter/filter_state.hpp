@@ -46,15 +46,30 @@ struct FilterState {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
   Matrix15d P = Matrix15d::Identity();
 
+  /// Estimates of both biases with their joint covariance.
+  struct Biases {
+    Eigen::Vector3d accel = Eigen::Vector3d::Zero();
+    Eigen::Vector3d gyro = Eigen::Vector3d::Zero();
+    Eigen::Matrix<double, 6, 6> P = Eigen::Matrix<double, 6, 6>::Identity();
+  };
+  Biases biases() const { return {accel_bias, gyro_bias, P.bottomRightCorner<6, 6>()}; }
+  /// Replaces the estimate of the biases, independently of the rest of the state.
+  void set_biases(const Biases& biases);
+
   /// x + error.
   void add(const Vector15d& error);
   /// Error e with other + e = *this.
   Vector15d minus(const FilterState& other) const;
 };
 
+/// Longest time without measurements over which a held reading is taken for what the robot does.
+constexpr TimeNs kLongestHold = kSecond / 20;
+
 /// Carries state and covariance through the readings of `imu`, which begin at state.t: the model of
 /// article 3.1.1 (a = R (a~ - b_a) + g) with the midpoint rule, the covariance to first order.
 /// `gravity` in the map frame.
+/// Where readings are held, what the robot does wanders away from them: over more than kLongestHold
+/// the difference is kept in the biases, so that scans can tell what the robot does.
 void propagate(FilterState& state, const preprocess::ImuSegment& imu,
                const Eigen::Vector3d& gravity, const ImuNoiseConfig& noise);
 

@@ -142,7 +142,7 @@ Result<std::vector<Eigen::Vector3f>> PriorMap::read_tile_points(const std::files
   auto content = read_point_file(dir, tile);
   if (!content) return content.error();
   std::vector<Eigen::Vector3f> points(tile.points);
-  if (!points.empty()) std::memcpy(points.data(), content->data(), content->size());
+  if (!points.empty()) std::memcpy(points.data()->data(), content->data(), content->size());
   return points;
 }
 

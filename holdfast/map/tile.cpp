@@ -19,8 +19,10 @@ bool inside(std::uint64_t offset, std::uint64_t bytes, std::uint64_t size) {
 
 bool fits(const LevelHeader& level, std::uint64_t size) {
   constexpr std::int32_t kMostBlocks = 4096;
+  constexpr std::int32_t kFarthestBlock = 1 << 20;
   if (!(level.cell_m > 0) || level.blocks_xy < 0 || level.blocks_xy > kMostBlocks ||
-      level.blocks_z < 0 || level.blocks_z > kMostBlocks) {
+      level.blocks_z < 0 || level.blocks_z > kMostBlocks || level.z_block < -kFarthestBlock ||
+      level.z_block > kFarthestBlock) {
     return false;
   }
   const auto index_entries =

@@ -3,6 +3,11 @@
 #include <numbers>
 
 namespace holdfast::pipeline {
+namespace {
+
+constexpr double kStartRadiusM = 150.0;
+
+}  // namespace
 
 Result<Localizer> Localizer::create(const Config& config, map::PriorMap map,
                                     const std::optional<SE3>& T_map_body, int threads) {
@@ -11,6 +16,10 @@ Result<Localizer> Localizer::create(const Config& config, map::PriorMap map,
         "no initial pose: give --initial-pose \"x y z qx qy qz qw\" (T_map_body at the end of the "
         "first scan, to within start.position_m and start.rotation_deg); a start without a pose is "
         "not available yet"};
+  }
+  // A damaged tile is found here, not as a robot that is lost.
+  if (const auto focused = map.focus(T_map_body->translation, kStartRadiusM); !focused) {
+    return focused.error();
   }
   baselines::MapFilter::Setup setup;
   setup.filter = config.map_filter;

@@ -56,6 +56,8 @@ bool ImuBuffer::segment(TimeNs begin, TimeNs end, ImuSegment& out) const {
   }
   const TimeNs uncovered_front = std::clamp<TimeNs>(samples_.front().t - begin, 0, end - begin);
   const TimeNs uncovered_back = std::clamp<TimeNs>(end - samples_.back().t, 0, end - begin);
+  out.measured_begin = samples_.front().t;
+  out.measured_end = samples_.back().t;
   out.held_ns = std::min(uncovered_front + uncovered_back, end - begin);
   return true;
 }

@@ -13,6 +13,8 @@ struct ImuSegment {
   std::vector<ImuSample> samples;  ///< ascending; at least two when the span is not empty
   TimeNs held_ns =
       0;  ///< length of the span that no measurement covers: the nearest reading is held
+  TimeNs measured_begin = INT64_MIN;  ///< the readings from here
+  TimeNs measured_end = INT64_MAX;    ///< to here are measured or lie between measured ones
   TimeNs longest_gap_ns = 0;  ///< longest time between neighbouring readings inside the span
 };
 
