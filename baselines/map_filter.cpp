@@ -3,11 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "holdfast/registration/degeneracy.hpp"
+
 namespace holdfast::baselines {
 namespace {
-
-using registration::kPosition;
-using registration::kRotation;
 
 constexpr double kMapRadiusM = 150.0;  // tiles farther than this are not needed
 constexpr int kScansToConfirm = 2;
@@ -16,26 +15,6 @@ constexpr double kAccelBiasJump = 0.3;         // m/s^2, what a bias may jump by
 constexpr double kGyroBiasJump = 0.03;         // rad/s
 constexpr double kCoarseFromM = 0.1;           // uncertainty from which coarse planes are asked
 constexpr float kCoarseSurfaceSigmaM = 0.05F;  // while coarse planes are matched
-
-/// Directions in which this scan alone determines the position worse than `sigma`, the rotation
-/// being free: eigenvectors of the Schur complement of the rotation.
-std::vector<Eigen::Vector3d> weak_directions(const registration::Matrix9d& H, double sigma) {
-  const Eigen::Matrix3d pr = H.block<3, 3>(kPosition, kRotation);
-  const Eigen::Matrix3d rr = H.block<3, 3>(kRotation, kRotation);
-  Eigen::Matrix3d information =
-      H.block<3, 3>(kPosition, kPosition) - pr * rr.ldlt().solve(pr.transpose());
-  // Normals are off by some milliradians, which gives every direction a share of the information of
-  // the others that the scene does not hold.
-  constexpr double kNormalSigma = 0.005;
-  information -= kNormalSigma * kNormalSigma * information.trace() * Eigen::Matrix3d::Identity();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information);
-  std::vector<Eigen::Vector3d> weak;
-  for (int i = 0; i < 3; ++i) {
-    if (solver.eigenvalues()[i] < 1.0 / (sigma * sigma))
-      weak.push_back(solver.eigenvectors().col(i));
-  }
-  return weak;
-}
 
 double largest_sigma(const Matrix15d& P, int offset) {
   const Eigen::Matrix3d block = P.block<3, 3>(offset, offset);
@@ -249,7 +228,9 @@ void MapFilter::describe(const UpdateResult& update, StepReport& report) const {
   report.mean_abs_residual_m = e.weight > 0 ? e.abs_residual / e.weight : 0.0;
   report.sigma_trans_m = largest_sigma(state_.P, FilterState::kP);
   report.sigma_rot_rad = largest_sigma(state_.P, FilterState::kR);
-  if (update.usable) report.weak_directions = weak_directions(e.H, setup_.filter.weak_sigma_m);
+  if (update.usable) {
+    report.weak_directions = registration::weak_directions(e.H, setup_.filter.weak_sigma_m);
+  }
 }
 
 void MapFilter::judge(const UpdateResult& update, StepReport& report) {
