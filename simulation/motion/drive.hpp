@@ -19,6 +19,7 @@ struct DriveStyle {
   double distance_m = 100.0;       ///< where the drive ends when no duration is given
   double body_height_m = 0.45;     ///< of the IMU above the ground
   double weave_m = 0.08;           ///< amplitude of slow deviations to the side
+  double weave_length_m = 7;       ///< of their shortest wave; the longest is 25 / 7 of it
   double sway_rad = 0.003;         ///< amplitude of roll and pitch oscillation at nominal speed
   double heave_m = 0.002;          ///< amplitude of vertical oscillation at nominal speed
 };

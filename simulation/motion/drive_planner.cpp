@@ -75,7 +75,7 @@ DrivePlanner::DrivePlanner(const Route& route, const DriveStyle& style, std::uin
   RandomStream start(seed, "drive.start");
   legs_.push_back({0, start.below(2), start.uniform(0, route.length()), 0});
   RandomStream line(seed, "drive.line");
-  weave_ = draw_waves(line, 25, 7);
+  weave_ = draw_waves(line, 25.0 / 7.0 * style.weave_length_m, style.weave_length_m);
   RandomStream pace(seed, "drive.pace");
   pace_ = draw_waves(pace, 25, 5);
   RandomStream sway(seed, "drive.sway");

@@ -11,5 +11,6 @@ Scenario make_office();
 Scenario make_hall();
 Scenario make_warehouse();
 Scenario make_yard();
+Scenario make_tunnel();
 
 }  // namespace holdfast::simulation

@@ -28,38 +28,48 @@ void stand(WorldBuilder& build, const Placement& place, const Vector3d& p, const
 }  // namespace
 
 void add_desk(WorldBuilder& build, const Placement& place) {
-  stand(build, place, {0, 0, 0.71}, {0.75, 1.4, 0.03}, materials::kWood);
-  for (const double side : {-1.0, 1.0}) {
-    stand(build, place, {0, side * 0.67, 0}, {0.65, 0.03, 0.71}, materials::kPaintedMetal);
-  }
-  stand(build, place, {-0.03, 0.43, 0.05}, {0.58, 0.42, 0.55}, materials::kPaintedMetal);
-  stand(build, place, {0.2, 0, 0.74}, {0.18, 0.2, 0.02}, materials::kPaintedMetal);
-  stand(build, place, {0.22, 0, 0.82}, {0.05, 0.55, 0.34}, materials::kPaintedMetal);
+  build.object({"desk"}, [&] {
+    stand(build, place, {0, 0, 0.71}, {0.75, 1.4, 0.03}, materials::kWood);
+    for (const double side : {-1.0, 1.0}) {
+      stand(build, place, {0, side * 0.67, 0}, {0.65, 0.03, 0.71}, materials::kPaintedMetal);
+    }
+    stand(build, place, {-0.03, 0.43, 0.05}, {0.58, 0.42, 0.55}, materials::kPaintedMetal);
+    stand(build, place, {0.2, 0, 0.74}, {0.18, 0.2, 0.02}, materials::kPaintedMetal);
+    stand(build, place, {0.22, 0, 0.82}, {0.05, 0.55, 0.34}, materials::kPaintedMetal);
+  });
 }
 
 void add_chair(WorldBuilder& build, const Placement& place) {
-  for (int leg = 0; leg < 5; ++leg) {
-    const Placement turned{place.at, place.yaw + leg * 2 * std::numbers::pi / 5};
-    stand(build, turned, {0.15, 0, 0.04}, {0.3, 0.04, 0.04}, materials::kPaintedMetal);
-  }
-  build.cylinder(in_map(place, {0, 0, 0.08}), 0.03, 0.36, materials::kPaintedMetal, 12);
-  stand(build, place, {0, 0, 0.44}, {0.46, 0.46, 0.08}, materials::kFabric);
-  stand(build, place, {-0.22, 0, 0.58}, {0.06, 0.42, 0.45}, materials::kFabric);
+  build.object({"chair"}, [&] {
+    for (int leg = 0; leg < 5; ++leg) {
+      const Placement turned{place.at, place.yaw + leg * 2 * std::numbers::pi / 5};
+      stand(build, turned, {0.15, 0, 0.04}, {0.3, 0.04, 0.04}, materials::kPaintedMetal);
+    }
+    build.cylinder(in_map(place, {0, 0, 0.08}), 0.03, 0.36, materials::kPaintedMetal, 12);
+    stand(build, place, {0, 0, 0.44}, {0.46, 0.46, 0.08}, materials::kFabric);
+    stand(build, place, {-0.22, 0, 0.58}, {0.06, 0.42, 0.45}, materials::kFabric);
+  });
 }
 
 void add_cabinet(WorldBuilder& build, const Placement& place, double width, double height,
                  const Material& material) {
-  stand(build, place, {-0.02, 0, 0}, {0.38, width - 0.02, 0.08}, materials::kPaintedMetal);
-  stand(build, place, {0, 0, 0.08}, {0.42, width, height - 0.08}, material);
+  build.object({"cabinet"}, [&] {
+    stand(build, place, {-0.02, 0, 0}, {0.38, width - 0.02, 0.08}, materials::kPaintedMetal);
+    stand(build, place, {0, 0, 0.08}, {0.42, width, height - 0.08}, material);
+  });
 }
 
 void add_partition(WorldBuilder& build, const Placement& place, double length, double height) {
-  stand(build, place, {0, 0, 0.05}, {0.04, length, height - 0.05}, materials::kFabric);
+  build.object({"partition"}, [&] {
+    stand(build, place, {0, 0, 0.05}, {0.04, length, height - 0.05}, materials::kFabric);
+  });
 }
 
 void add_wall_box(WorldBuilder& build, const Placement& place, double bottom, const Vector3d& size,
                   const Material& material) {
-  stand(build, place, {0.5 * size.x(), 0, bottom}, size, material);
+  build.object({"wall box", true}, [&] {
+    stand(build, place, {0.5 * size.x(), 0, bottom}, size, material);
+  });
 }
 
 void add_tree(WorldBuilder& build, const Vector2d& at, double height, int shape) {
@@ -86,13 +96,15 @@ void add_pole(WorldBuilder& build, const Placement& place, double height) {
 }
 
 void add_car(WorldBuilder& build, const Placement& place) {
-  for (const double x : {-1.35, 1.35}) {
-    for (const double y : {-0.75, 0.75}) {
-      stand(build, place, {x, y, 0}, {0.6, 0.2, 0.6}, materials::kFabric);
+  build.object({"car"}, [&] {
+    for (const double x : {-1.35, 1.35}) {
+      for (const double y : {-0.75, 0.75}) {
+        stand(build, place, {x, y, 0}, {0.6, 0.2, 0.6}, materials::kFabric);
+      }
     }
-  }
-  stand(build, place, {0, 0, 0.25}, {4.4, 1.75, 0.6}, materials::kPaintedMetal);
-  stand(build, place, {-0.25, 0, 0.85}, {2.3, 1.5, 0.55}, materials::kPaintedMetal);
+    stand(build, place, {0, 0, 0.25}, {4.4, 1.75, 0.6}, materials::kPaintedMetal);
+    stand(build, place, {-0.25, 0, 0.85}, {2.3, 1.5, 0.55}, materials::kPaintedMetal);
+  });
 }
 
 void add_rack(WorldBuilder& build, const Placement& place, const RackPlan& plan) {
@@ -120,8 +132,10 @@ void add_rack(WorldBuilder& build, const Placement& place, const RackPlan& plan)
       const double depth = random.uniform(0.8, 1.1);
       const double aside = random.uniform(-0.06, 0.06);
       if (random.uniform() < 0.18) continue;
-      stand(build, place, {aside, y, z}, {1.0, 1.2, 0.14}, materials::kWood);
-      stand(build, place, {aside, y, z + 0.14}, {depth, width, load}, materials::kCardboard);
+      build.object({"load", true}, [&] {
+        stand(build, place, {aside, y, z}, {1.0, 1.2, 0.14}, materials::kWood);
+        stand(build, place, {aside, y, z + 0.14}, {depth, width, load}, materials::kCardboard);
+      });
     }
   }
 }

@@ -4,7 +4,7 @@
 
 /// Things that stand in worlds, made of the builder's solids. `at` is where they stand on the
 /// ground, `yaw` turns them about the vertical; what has a front faces along +x before it is
-/// turned.
+/// turned. All but trees, poles and racks are objects of the world, and so is each load of a rack.
 namespace holdfast::simulation {
 
 struct Placement {

@@ -39,6 +39,24 @@ void WorldBuilder::triangle(const Vector3d& a, const Vector3d& b, const Vector3d
   for (const Vector3d& p : {a, b, c}) world_.vertices.push_back(p.cast<float>());
   world_.triangles.push_back({first, first + 1, first + 2});
   world_.material_of.push_back(material_index(material));
+  world_.object_of.push_back(object_);
+}
+
+void WorldBuilder::object(WorldObject object, const std::function<void()>& parts) {
+  const bool outermost = object_ == 0;
+  if (outermost) {
+    object.spare = object.spare || spare_;
+    world_.objects.push_back(std::move(object));
+    object_ = static_cast<std::uint16_t>(world_.objects.size());
+  }
+  parts();
+  if (outermost) object_ = 0;
+}
+
+void WorldBuilder::spare(const std::function<void()>& parts) {
+  spare_ = true;
+  parts();
+  spare_ = false;
 }
 
 void WorldBuilder::quad(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -67,6 +68,11 @@ class WorldBuilder {
   /// The face of a wall with the sides and backs of its openings.
   void wall(const WallPlan& plan);
 
+  /// What `parts` builds is one object; objects within it belong to it.
+  void object(WorldObject object, const std::function<void()>& parts);
+  /// The objects in `parts` are spare ones.
+  void spare(const std::function<void()>& parts);
+
   World build() { return std::move(world_); }
 
  private:
@@ -78,6 +84,8 @@ class WorldBuilder {
   void opening(const WallPlan& plan, const WallOpening& hole);
 
   World world_;
+  std::uint16_t object_ = 0;  ///< that triangles are being built for, as in World::object_of
+  bool spare_ = false;
 };
 
 }  // namespace holdfast::simulation

@@ -218,9 +218,8 @@ TEST_F(Corners, NineOfTenCellsOnAnEdgeHoldItsTwoPlanesAndNothingElse) {
 }
 
 TEST_F(Corners, APlaneAcrossAnEdgeIsRare) {
-  // It would be a wall that is not there, in places that every scan of a room sees. Measured: 2.7
-  // %.
-  EXPECT_LT(edges.with_false_plane, 0.03 * edges.cells);
+  // It would be a wall that is not there, in places that every scan of a room sees.
+  EXPECT_LT(edges.with_false_plane, 0.01 * edges.cells);
 }
 
 TEST_F(Corners, MostCellsInACornerHoldItsThreePlanesAndNothingElse) {

@@ -219,31 +219,62 @@ void remove_near(Offsets& points, const Plane& plane, double band_m) {
 // smeared by the poses that the map was made with.
 constexpr double kGhostShare = 0.35;
 
+/// Leaves out the planes that live on the points of stronger ones: ghosts, and planes across an
+/// edge, which hold a strip of each of its sides.
+std::vector<Plane> that_stand_alone(std::vector<Plane> planes, Offsets points,
+                                    const FitOptions& options) {
+  std::stable_sort(planes.begin(), planes.end(),
+                   [](const Plane& a, const Plane& b) { return a.support > b.support; });
+  const double least = planes.empty() ? 0 : kGhostShare * planes.front().support;
+  std::erase_if(planes, [&](const Plane& plane) {
+    const int own = count_near(points, plane, 3.0 * options.noise_m);
+    if (own < std::max<double>(least, options.min_support)) return true;
+    remove_near(points, plane, 3.5 * options.noise_m);
+    return false;
+  });
+  return planes;
+}
+
+/// The plane of the points near a plane, until these are the same.
+std::optional<Plane> settled_plane(const Plane& seed, const Offsets& points,
+                                   const FitOptions& options) {
+  constexpr int kMostFits = 6;
+  std::optional<Plane> plane = seed;
+  for (int fit = 0; fit < kMostFits; ++fit) {
+    const auto next =
+        plane_through(near_plane(points, *plane, 3.0 * options.noise_m), options.min_support);
+    const bool settled = next && next->support == plane->support && fit > 0;
+    plane = next;
+    if (!plane || settled) break;
+  }
+  return plane;
+}
+
 /// Edges, corners and thin walls: planes one after the other, each from the points that the ones
 /// before left over.
 void several_planes(const Neighbourhood& n, double cell_m, const FitOptions& options,
                     std::vector<Surface>& out) {
   constexpr int kMostPlanes = 3;
   const double radius = 1.4 * options.narrow_radius;
+  const Offsets whole = within(n.all, radius * cell_m);
   Offsets own = n.own;
-  Offsets all = within(n.all, radius * cell_m);
-  int strongest = 0;
+  Offsets all = whole;
+  std::vector<Plane> planes;
   for (int k = 0;
        k < kMostPlanes && own.size() >= 3 && static_cast<int>(all.size()) >= options.min_support;
        ++k) {
     const auto seed = best_of_triples(own, all, options);
-    if (!seed) return;
-    auto plane = plane_through(near_plane(all, *seed, 3.0 * options.noise_m), options.min_support);
-    if (!plane) return;
-    plane = plane_through(near_plane(all, *plane, 3.0 * options.noise_m), options.min_support);
-    if (!plane || !is_flat(*plane, options)) return;
-    if (near_plane(own, *plane, 3.0 * options.noise_m).count < 3) return;
-    strongest = std::max(strongest, plane->support);
-    if (plane->support < kGhostShare * strongest) return;
+    if (!seed) break;
+    auto plane = settled_plane(*seed, all, options);
+    if (!plane || !is_flat(*plane, options)) break;
+    if (near_plane(own, *plane, 3.0 * options.noise_m).count < 3) break;
     plane->density = n.density / (radius * radius);
-    out.push_back(surface_of(*plane, n.center));
+    planes.push_back(*plane);
     remove_near(own, *plane, 3.5 * options.noise_m);
     remove_near(all, *plane, 3.5 * options.noise_m);
+  }
+  for (const Plane& plane : that_stand_alone(std::move(planes), whole, options)) {
+    out.push_back(surface_of(plane, n.center));
   }
 }
 
