@@ -62,6 +62,15 @@ std::string complaint(const Scenario& scenario, const SimulationOptions& options
   if (options.duration_s && !(*options.duration_s >= 0.5 && *options.duration_s <= 1e6)) {
     return fmt::format("duration of {} s: expected 0.5 to 1000000", *options.duration_s);
   }
+  if (!(options.changed_share >= 0 && options.changed_share <= 1)) {
+    return fmt::format("{} % of the world changed: expected 0 to 100", 100 * options.changed_share);
+  }
+  if (!(options.map_sigma_m >= 0 && options.map_sigma_m <= 1)) {
+    return fmt::format("map noise of {} m: expected 0 to 1", options.map_sigma_m);
+  }
+  if (!(lidar.range_sigma_m >= 0 && lidar.range_sigma_m <= 1)) {
+    return fmt::format("range noise of {} m: expected 0 to 1", lidar.range_sigma_m);
+  }
   if (options.threads < 1) return fmt::format("{} threads: expected at least 1", options.threads);
   return {};
 }
@@ -80,6 +89,8 @@ std::string late_event(const SimulationOptions& options, TimeNs duration) {
 struct Simulation::Parts {
   SimulationOptions options;
   Scenario scenario;
+  std::vector<ObjectChange> changes;
+  std::optional<World> world_before;  ///< none: nothing has changed
   RayCaster caster;
   WorkerPool pool;
   Drive drive;
@@ -98,7 +109,8 @@ struct Simulation::Parts {
   std::optional<Scan> pending;  ///< cast but not yet handed out; times from the start of the log
   std::optional<TimeNs> first_pose_time;
 
-  Parts(Scenario the_scenario, const SimulationOptions& the_options, Drive the_drive);
+  Parts(Scenario the_scenario, std::optional<ChangedWorld> change,
+        const SimulationOptions& the_options, Drive the_drive);
   TimeNs log_end() const { return static_cast<TimeNs>(imu_samples - 1) * imu.interval(); }
   void cast_pending();
   ImuSample take_imu();
@@ -107,10 +119,12 @@ struct Simulation::Parts {
   TrueState state(TimeNs t) const;
 };
 
-Simulation::Parts::Parts(Scenario the_scenario, const SimulationOptions& the_options,
-                         Drive the_drive)
+Simulation::Parts::Parts(Scenario the_scenario, std::optional<ChangedWorld> change,
+                         const SimulationOptions& the_options, Drive the_drive)
     : options(the_options),
       scenario(std::move(the_scenario)),
+      changes(change ? change->changes : std::vector<ObjectChange>()),
+      world_before(change ? std::optional(std::move(change->before)) : std::nullopt),
       caster(scenario.world),
       pool(options.threads),
       drive(std::move(the_drive)),
@@ -199,9 +213,17 @@ Result<std::unique_ptr<Simulation>> Simulation::create(Scenario scenario,
   if (options.duration_s) duration = from_seconds(*options.duration_s);
   Drive drive = Drive::plan(scenario.route, scenario.style, options.seed, duration,
                             starts_of(EventKind::kKidnap, options.events));
+  std::optional<ChangedWorld> change;
+  if (options.changed_share > 0) {
+    auto changed = change_world(scenario, options.changed_share, options.seed);
+    if (!changed) return changed.error();
+    change = std::move(*changed);
+  }
+  scenario.world = change ? std::move(change->after) : unchanged_world(scenario.world);
   const std::string late = late_event(options, drive.duration());
   if (!late.empty()) return Error{late};
-  auto parts = std::make_unique<Parts>(std::move(scenario), options, std::move(drive));
+  auto parts =
+      std::make_unique<Parts>(std::move(scenario), std::move(change), options, std::move(drive));
   return std::unique_ptr<Simulation>(new Simulation(std::move(parts)));
 }
 
@@ -254,13 +276,19 @@ SE3 Simulation::initial_pose() {
 const std::vector<SimulatedEvent>& Simulation::events() const { return parts_->events; }
 const SimulationOptions& Simulation::options() const { return parts_->options; }
 const Scenario& Simulation::scenario() const { return parts_->scenario; }
+const std::vector<ObjectChange>& Simulation::changes() const { return parts_->changes; }
 
 io::PointCloud Simulation::survey_map() {
   Parts& p = *parts_;
   SurveyModel model;
   model.height_m = p.scenario.style.body_height_m + p.options.lidar.T_body_lidar.translation.z();
   model.range_m = p.options.lidar.max_range_m;
-  return survey(p.scenario.world, p.caster, p.scenario.route, model, p.options.seed, p.pool);
+  model.sigma_m = p.options.map_sigma_m;
+  if (!p.world_before) {
+    return survey(p.scenario.world, p.caster, p.scenario.route, model, p.options.seed, p.pool);
+  }
+  const RayCaster caster(*p.world_before);
+  return survey(*p.world_before, caster, p.scenario.route, model, p.options.seed, p.pool);
 }
 
 }  // namespace holdfast::simulation

@@ -9,6 +9,7 @@
 #include "holdfast/core/result.hpp"
 #include "holdfast/core/sensor_data.hpp"
 #include "holdfast/io/point_cloud.hpp"
+#include "simulation/change/world_change.hpp"
 #include "simulation/event.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/sensors/imu_model.hpp"
@@ -23,7 +24,9 @@ struct SimulationOptions {
   std::vector<EventSpec> events;
   ImuModel imu;
   LidarModel lidar = LidarModel::rs16();
-  int threads = 1;  ///< the stream has the same bits for any number
+  double map_sigma_m = 0.005;  ///< noise of the survey on each axis
+  double changed_share = 0;    ///< of the world's objects since the survey, 0 to 1
+  int threads = 1;             ///< the stream has the same bits for any number
 };
 
 /// The exact state behind the measurements.
@@ -72,10 +75,14 @@ class Simulation : public SensorSource {
 
   const std::vector<SimulatedEvent>& events() const;
   const SimulationOptions& options() const;
+  /// The scenario as driven: its world is the one after the changes.
   const Scenario& scenario() const;
+  /// What has changed in the world since the survey.
+  const std::vector<ObjectChange>& changes() const;
 
-  /// The static world as a surveyor sees it: points about 6 cm apart with 5 mm noise on each axis,
-  /// on surfaces that the LiDAR can see from the route. Takes a moment (visibility is ray-cast).
+  /// The static world as a surveyor saw it, before anything changed: points about 6 cm apart with
+  /// noise of map_sigma_m on each axis, on surfaces that the LiDAR can see from the route. Takes a
+  /// moment (visibility is ray-cast).
   io::PointCloud survey_map();
 
  private:
