@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <thread>
@@ -20,6 +22,11 @@ struct SimulateArguments {
   std::uint64_t seed = 1;
   std::optional<double> duration_s;
   std::vector<std::string> events;
+  double changed_percent = 0;
+  double speed_factor = 1;
+  double wobble_deg = 0;
+  std::optional<double> range_noise_m;
+  std::optional<double> map_noise_m;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
   bool list = false;
 };
@@ -50,19 +57,41 @@ void write_with_progress(simulation::Simulation& simulation, const std::string& 
   if (!written) throw CommandFailed{1, written.error().message};
 }
 
+void print_changes(const simulation::Simulation& simulation) {
+  const auto& changes = simulation.changes();
+  if (changes.empty()) return;
+  const auto count = [&](simulation::ChangeKind kind) {
+    return std::count_if(changes.begin(), changes.end(),
+                         [kind](const auto& change) { return change.kind == kind; });
+  };
+  std::printf("%zu of %zu objects changed since the survey: %td moved, %td gone, %td new\n",
+              changes.size(), simulation.scenario().world.objects.size(),
+              count(simulation::ChangeKind::kMoved), count(simulation::ChangeKind::kRemoved),
+              count(simulation::ChangeKind::kAdded));
+}
+
+simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
+  simulation::SimulationOptions options;
+  options.scenario = arguments.scenario;
+  options.seed = arguments.seed;
+  options.duration_s = arguments.duration_s;
+  options.events = parse_events(arguments.events);
+  options.changed_share = arguments.changed_percent / 100;
+  options.speed_factor = arguments.speed_factor;
+  options.wobble_rad = arguments.wobble_deg * std::numbers::pi / 180;
+  options.lidar.range_sigma_m = arguments.range_noise_m.value_or(options.lidar.range_sigma_m);
+  options.map_sigma_m = arguments.map_noise_m.value_or(options.map_sigma_m);
+  options.threads = arguments.threads > 0 ? arguments.threads : 1;
+  return options;
+}
+
 void simulate(const SimulateArguments& arguments) {
   if (arguments.list) return print_scenarios();
   if (arguments.scenario.empty()) {
     throw CommandFailed{2, "simulate: expected a SCENARIO (--list shows them)"};
   }
   if (arguments.out.empty()) throw CommandFailed{2, "simulate: expected --out DIR"};
-  simulation::SimulationOptions options;
-  options.scenario = arguments.scenario;
-  options.seed = arguments.seed;
-  options.duration_s = arguments.duration_s;
-  options.events = parse_events(arguments.events);
-  options.threads = arguments.threads > 0 ? arguments.threads : 1;
-  auto simulation = simulation::Simulation::create(options);
+  auto simulation = simulation::Simulation::create(options_of(arguments));
   if (!simulation) throw CommandFailed{2, "simulate: " + simulation.error().message};
 
   write_with_progress(**simulation, arguments.out);
@@ -70,7 +99,39 @@ void simulate(const SimulateArguments& arguments) {
   std::printf("%s: run.bag truth.tum events.jsonl map.pcd config.yaml\n", arguments.out.c_str());
   std::printf("%zu scans, %.1f s\n", (*simulation)->scan_count(),
               to_seconds((*simulation)->end_time() - (*simulation)->start_time()));
+  print_changes(**simulation);
   std::printf("the drive begins at --initial-pose \"%s\"\n", pose.c_str());
+}
+
+/// Options that make the drive harder than the scenario is.
+void add_hardships(CLI::App& command, SimulateArguments& arguments) {
+  command
+      .add_option("--changed", arguments.changed_percent,
+                  "share of the world's movable objects (furniture, loads, cars, boards, signs) "
+                  "that was moved, removed or added after the survey: map.pcd shows the world "
+                  "before, run.bag the world after; 0 to 100 (default 0)")
+      ->type_name("PERCENT");
+  command
+      .add_option("--speed", arguments.speed_factor,
+                  "drive the same way so many times as fast, turns and accelerations as well; "
+                  "0.1 to 10 (default 1)")
+      ->type_name("FACTOR");
+  command
+      .add_option("--wobble", arguments.wobble_deg,
+                  "amplitude in degrees of roll, pitch and yaw oscillations at 1 to 3 Hz while the "
+                  "robot moves, as of a LiDAR in the hand (5) or on a rough road (2); 0 to 30 "
+                  "(default 0)")
+      ->type_name("DEG");
+  command
+      .add_option("--range-noise", arguments.range_noise_m,
+                  "standard deviation of the LiDAR's ranges in metres (default 0.02); config.yaml "
+                  "says it as lidar.range_sigma_m")
+      ->type_name("M");
+  command
+      .add_option("--map-noise", arguments.map_noise_m,
+                  "standard deviation of the points of map.pcd on each axis in metres (default "
+                  "0.005)")
+      ->type_name("M");
 }
 
 }  // namespace
@@ -97,6 +158,7 @@ void add_simulate_command(CLI::App& app) {
                    "imu_bias_jump, kidnap; may be given more than once")
       ->type_name("EVENT")
       ->allow_extra_args(false);
+  add_hardships(*command, *arguments);
   command
       ->add_option("--threads", arguments->threads,
                    "threads for casting rays (default: all cores); the output does not depend "

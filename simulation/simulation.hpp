@@ -24,6 +24,8 @@ struct SimulationOptions {
   std::vector<EventSpec> events;
   ImuModel imu;
   LidarModel lidar = LidarModel::rs16();
+  double speed_factor = 1;     ///< on the scenario's speed, turning rate and accelerations
+  double wobble_rad = 0;       ///< amplitude of roll, pitch and yaw at 1 to 3 Hz while moving
   double map_sigma_m = 0.005;  ///< noise of the survey on each axis
   double changed_share = 0;    ///< of the world's objects since the survey, 0 to 1
   int threads = 1;             ///< the stream has the same bits for any number

@@ -6,6 +6,15 @@
 
 namespace holdfast::simulation {
 
+DriveStyle DriveStyle::faster(double factor) const {
+  DriveStyle style = *this;
+  style.speed_m_s *= factor;
+  style.yaw_rate_rad_s *= factor;
+  style.acceleration_m_s2 *= factor;
+  style.lateral_m_s2 *= factor;
+  return style;
+}
+
 Drive Drive::plan(const Route& route, const DriveStyle& style, std::uint64_t seed,
                   std::optional<TimeNs> duration, const std::vector<TimeNs>& kidnaps) {
   DrivePlanner planner(route, style, seed);

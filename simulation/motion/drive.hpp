@@ -22,6 +22,10 @@ struct DriveStyle {
   double weave_length_m = 7;       ///< of their shortest wave; the longest is 25 / 7 of it
   double sway_rad = 0.003;         ///< amplitude of roll and pitch oscillation at nominal speed
   double heave_m = 0.002;          ///< amplitude of vertical oscillation at nominal speed
+  double wobble_rad = 0;           ///< amplitude of roll, pitch and yaw at 1 to 3 Hz while moving
+
+  /// The same way at `factor` times the speed; turning rate and accelerations grow likewise.
+  DriveStyle faster(double factor) const;
 };
 
 /// An instant change of the pose.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "simulation/motion/smoothing.hpp"
@@ -32,6 +33,8 @@ constexpr double kBlendEnd = 1.75;
 // A kidnap moves >= 3 m or >= 45 degrees; weaving and smoothing may take a little of that away.
 constexpr double kFarMetres = 3.5;
 constexpr double kFarRadians = 60.0 / 180.0 * std::numbers::pi;
+
+constexpr double kWobbleSpeed = 0.3;  // m/s from which on the wobble is full
 
 TimeNs tick_time(std::size_t tick) { return (static_cast<TimeNs>(tick) - TimeNs{kLead}) * kKnot; }
 std::size_t tick_at(TimeNs t) { return static_cast<std::size_t>(t / kKnot) + kLead; }
@@ -80,6 +83,8 @@ DrivePlanner::DrivePlanner(const Route& route, const DriveStyle& style, std::uin
   pace_ = draw_waves(pace, 25, 5);
   RandomStream sway(seed, "drive.sway");
   for (auto& waves : sway_) waves = draw_waves(sway, 1.4, 0.4);
+  RandomStream wobble(seed, "drive.wobble");
+  for (auto& waves : wobble_) waves = draw_waves(wobble, 1.0, 1.0 / 3.0);
 }
 
 void DrivePlanner::drive(std::optional<TimeNs> duration, const std::vector<TimeNs>& kidnaps) {
@@ -211,13 +216,20 @@ void DrivePlanner::join(std::size_t leg, const Controls& before, Controls& after
   }
 }
 
+/// Speed at each tick of a leg, as far as `at_most`, smoothed.
+std::vector<double> DrivePlanner::speeds(std::size_t leg, double at_most) const {
+  std::vector<double> raw;
+  for (std::size_t tick = first_tick(leg) - kMeanReach; tick <= last_tick(leg) + kMeanReach;
+       ++tick) {
+    raw.push_back(std::min(speed_[tick], at_most));
+  }
+  return smoothed(std::move(raw));
+}
+
 /// Adds oscillation that grows with the speed.
 void DrivePlanner::add_sway(std::size_t leg, Controls& controls) const {
   const std::size_t first = first_tick(leg);
-  const std::vector<double> raw(
-      speed_.begin() + static_cast<std::ptrdiff_t>(first - kMeanReach),
-      speed_.begin() + static_cast<std::ptrdiff_t>(last_tick(leg) + kMeanReach + 1));
-  const std::vector<double> speed = smoothed(raw);
+  const std::vector<double> speed = speeds(leg, std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < controls.size(); ++i) {
     const double t = to_seconds(tick_time(first + i));
     const double envelope = 0.5 * speed[i] / style_.speed_m_s;
@@ -225,6 +237,26 @@ void DrivePlanner::add_sway(std::size_t leg, Controls& controls) const {
     controls[i][2] += style_.heave_m * sway(sway_[0]);
     controls[i][4] += style_.sway_rad * sway(sway_[1]);
     controls[i][5] += style_.sway_rad * sway(sway_[2]);
+  }
+}
+
+/// Adds fast oscillation that is full as soon as the robot moves. A spline of degree 5 through the
+/// controls of a wave of frequency f has sinc(f knot)^6 of its amplitude.
+void DrivePlanner::add_wobble(std::size_t leg, Controls& controls) const {
+  if (style_.wobble_rad == 0) return;
+  const std::size_t first = first_tick(leg);
+  const std::vector<double> moving = speeds(leg, kWobbleSpeed);
+  const auto amplified = [](const Wave& wave, double t) {
+    const double x = std::numbers::pi * wave.frequency * kKnotSeconds;
+    return wave.at(t) * std::pow(x / std::sin(x), 6);
+  };
+  for (std::size_t i = 0; i < controls.size(); ++i) {
+    const double t = to_seconds(tick_time(first + i));
+    const double half = 0.5 * style_.wobble_rad * moving[i] / kWobbleSpeed;
+    for (std::size_t k = 0; k < wobble_.size(); ++k) {
+      controls[i][static_cast<Eigen::Index>(3 + k)] +=
+          half * (amplified(wobble_[k][0], t) + amplified(wobble_[k][1], t));
+    }
   }
 }
 
@@ -237,6 +269,7 @@ std::vector<Trajectory> DrivePlanner::trajectories() const {
   std::vector<Trajectory> out;
   for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
     add_sway(leg, controls[leg]);
+    add_wobble(leg, controls[leg]);
     out.emplace_back(tick_time(first_tick(leg)), kKnot, std::move(controls[leg]));
   }
   return out;

@@ -57,7 +57,9 @@ class DrivePlanner {
   std::size_t last_tick(std::size_t leg) const;
   Controls plain_controls(std::size_t leg) const;
   void join(std::size_t leg, const Controls& before, Controls& after) const;
+  std::vector<double> speeds(std::size_t leg, double at_most) const;
   void add_sway(std::size_t leg, Controls& controls) const;
+  void add_wobble(std::size_t leg, Controls& controls) const;
 
   DriveStyle style_;
   std::vector<Course> courses_;
@@ -67,7 +69,8 @@ class DrivePlanner {
   TimeNs duration_ = 0;
   TwoWaves weave_{};
   TwoWaves pace_{};
-  std::array<TwoWaves, 3> sway_{};  ///< heave, pitch, roll
+  std::array<TwoWaves, 3> sway_{};    ///< heave, pitch, roll
+  std::array<TwoWaves, 3> wobble_{};  ///< yaw, pitch, roll
   RandomStream kidnap_random_;
 };
 
