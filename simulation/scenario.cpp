@@ -9,7 +9,7 @@
 namespace holdfast::simulation {
 namespace {
 
-constexpr std::array<ScenarioInfo, 7> kScenarios = {{
+constexpr std::array<ScenarioInfo, 8> kScenarios = {{
     {"corridor", "50 x 3 m with doors, pilasters and boards; 100 m there and back", make_corridor},
     {"office", "10 x 8 m with desks, cabinets and five people walking; 200 m of rounds",
      make_office},
@@ -19,6 +19,8 @@ constexpr std::array<ScenarioInfo, 7> kScenarios = {{
     {"yard", "80 x 60 m open ground between buildings, trees and poles; 250 m", make_yard},
     {"tunnel", "200 m of vaulted tube, 9 m wide, with little that tells how far one is; 440 m",
      make_tunnel},
+    {"offices", "40 x 25 m floor of rooms round a ring of corridors, seven people; 170 m",
+     make_offices},
     {"box", "empty room of 12 x 8 x 4 m, for tests with closed forms; 30 m", make_box},
 }};
 

@@ -12,5 +12,6 @@ Scenario make_hall();
 Scenario make_warehouse();
 Scenario make_yard();
 Scenario make_tunnel();
+Scenario make_offices();
 
 }  // namespace holdfast::simulation

@@ -50,10 +50,7 @@ void add_furniture(WorldBuilder& build) {
   add_cabinet(build, {{3.2, 0.21}, kQuarter}, 1.6, 0.8);
   add_cabinet(build, {{6.1, 0.21}, kQuarter}, 1.0, 1.6);
   add_wall_box(build, {{4.6, 0}, kQuarter}, 0.9, {0.05, 1.2, 0.9}, materials::kFabric);
-  build.object({"plant"}, [&] {
-    build.cylinder({0.5, 7.5, 0}, 0.2, 0.5, materials::kConcrete, 24);
-    build.ellipsoid({0.5, 7.5, 0.95}, {0.35, 0.35, 0.45}, materials::kFoliage);
-  });
+  add_plant(build, {0.5, 7.5});
 }
 
 Route rectangle(const Vector2d& min, const Vector2d& max) {

@@ -51,6 +51,61 @@ void add_chair(WorldBuilder& build, const Placement& place) {
   });
 }
 
+void add_table(WorldBuilder& build, const Placement& place, double length) {
+  build.object({"table"}, [&] {
+    stand(build, place, {0, 0, 0.71}, {0.9, length, 0.03}, materials::kWood);
+    for (const double x : {-0.4, 0.4}) {
+      for (const double y : {-0.5 * length + 0.06, 0.5 * length - 0.06}) {
+        stand(build, place, {x, y, 0}, {0.05, 0.05, 0.71}, materials::kPaintedMetal);
+      }
+    }
+  });
+}
+
+void add_plain_chair(WorldBuilder& build, const Placement& place) {
+  build.object({"chair"}, [&] {
+    for (const double x : {-0.19, 0.19}) {
+      for (const double y : {-0.19, 0.19}) {
+        stand(build, place, {x, y, 0}, {0.035, 0.035, 0.44}, materials::kWood);
+      }
+    }
+    stand(build, place, {0, 0, 0.44}, {0.42, 0.42, 0.03}, materials::kWood);
+    for (const double y : {-0.19, 0.19}) {
+      stand(build, place, {-0.19, y, 0.47}, {0.035, 0.035, 0.42}, materials::kWood);
+    }
+    stand(build, place, {-0.19, 0, 0.68}, {0.02, 0.345, 0.2}, materials::kWood);
+  });
+}
+
+void add_shelf(WorldBuilder& build, const Placement& place, double width, double height,
+               unsigned variant) {
+  constexpr double kBoardStep = 0.38;
+  constexpr double kThick = 0.02;
+  RandomStream random(variant, "shelf");
+  const double inside = width - 2 * kThick;
+  build.object({"shelf"}, [&] {
+    for (const double side : {-1.0, 1.0}) {
+      stand(build, place, {0, side * 0.5 * (width - kThick), 0}, {0.35, kThick, height},
+            materials::kWood);
+    }
+    for (double z = 0.06; z < height; z += kBoardStep) {
+      stand(build, place, {0, 0, z}, {0.35, inside, kThick}, materials::kWood);
+      const double filled = inside * random.uniform(0.3, 1.0);
+      const double high = random.uniform(0.22, 0.32);
+      if (z + kThick + high > height) continue;
+      stand(build, place, {-0.02, 0.5 * (filled - inside), z + kThick}, {0.27, filled, high},
+            materials::kCardboard);
+    }
+  });
+}
+
+void add_plant(WorldBuilder& build, const Vector2d& at) {
+  build.object({"plant"}, [&] {
+    build.cylinder({at.x(), at.y(), 0}, 0.2, 0.5, materials::kConcrete, 24);
+    build.ellipsoid({at.x(), at.y(), 0.95}, {0.35, 0.35, 0.45}, materials::kFoliage);
+  });
+}
+
 void add_cabinet(WorldBuilder& build, const Placement& place, double width, double height,
                  const Material& material) {
   build.object({"cabinet"}, [&] {

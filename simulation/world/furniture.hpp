@@ -19,6 +19,19 @@ void add_desk(WorldBuilder& build, const Placement& place);
 /// Office chair: five-legged base, post, seat and back.
 void add_chair(WorldBuilder& build, const Placement& place);
 
+/// Table of `length` (along y) x 0.9 m on four legs.
+void add_table(WorldBuilder& build, const Placement& place, double length);
+
+/// Wooden chair on four legs.
+void add_plain_chair(WorldBuilder& build, const Placement& place);
+
+/// Open shelf 0.35 m deep (along x): two sides and boards, on which `variant` puts folders.
+void add_shelf(WorldBuilder& build, const Placement& place, double width, double height,
+               unsigned variant);
+
+/// Pot with a bush, 1.4 m high.
+void add_plant(WorldBuilder& build, const Eigen::Vector2d& at);
+
 /// Closed cabinet with a plinth; depth along x, width along y.
 void add_cabinet(WorldBuilder& build, const Placement& place, double width, double height,
                  const Material& material = materials::kWood);

@@ -65,33 +65,37 @@ TEST(Scenario, RobotsKeepClearOfEverything) {
   }
 }
 
-TEST(Scenario, PeopleWalkAtTheirPaceAndKeepAway) {
-  const Scenario office = *make_scenario("office");
-  ASSERT_EQ(office.walkers.size(), 5U);
-  const RayCaster caster(office.world);
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const Drive robot = Drive::plan(office.route, office.style, seed, std::nullopt, {});
-    const Walkers people(office.walkers, robot, seed);
-    std::vector<double> way(people.size());
-    for (TimeNs t = 0; t < robot.duration(); t += kSecond / 10) {
-      const Vector2d body = robot.at(t).T_map_body.translation.head<2>();
-      for (std::size_t i = 0; i < people.size(); ++i) {
-        const MotionState person = people.at(i, t);
-        const Vector2d p = person.T_map_body.translation.head<2>();
-        ASSERT_GT((p - body).norm(), 0.6);
-        ASSERT_LT(person.v_map.norm(), 1.05);
-        ASSERT_GT(clearance(caster, {p.x(), p.y(), 1.2}), 0.15) << i << ": " << p.transpose();
-        way[i] += 0.1 * person.v_map.norm();
-        for (std::size_t k = 0; k < i; ++k) {
-          const Vector2d q = people.at(k, t).T_map_body.translation.head<2>();
-          ASSERT_GT((p - q).norm(), 0.4);
-        }
+void expect_polite_people(const Scenario& scenario, std::uint64_t seed) {
+  const RayCaster caster(scenario.world);
+  const Drive robot = Drive::plan(scenario.route, scenario.style, seed, std::nullopt, {});
+  const Walkers people(scenario.walkers, robot, seed);
+  std::vector<double> way(people.size());
+  for (TimeNs t = 0; t < robot.duration(); t += kSecond / 10) {
+    const Vector2d body = robot.at(t).T_map_body.translation.head<2>();
+    for (std::size_t i = 0; i < people.size(); ++i) {
+      const MotionState person = people.at(i, t);
+      const Vector2d p = person.T_map_body.translation.head<2>();
+      ASSERT_GT((p - body).norm(), 0.6) << i << ": " << p.transpose();
+      ASSERT_LT(person.v_map.norm(), 1.05);
+      ASSERT_GT(clearance(caster, {p.x(), p.y(), 1.2}), 0.15) << i << ": " << p.transpose();
+      way[i] += 0.1 * person.v_map.norm();
+      for (std::size_t k = 0; k < i; ++k) {
+        const Vector2d q = people.at(k, t).T_map_body.translation.head<2>();
+        ASSERT_GT((p - q).norm(), 0.4) << i << " and " << k << ": " << p.transpose();
       }
     }
-    for (std::size_t i = 0; i < people.size(); ++i) {
-      const double mean = way[i] / to_seconds(robot.duration());
-      EXPECT_GT(mean, 0.7 * office.walkers[i].speed_m_s) << "person " << i << ", seed " << seed;
-    }
+  }
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const double mean = way[i] / to_seconds(robot.duration());
+    EXPECT_GT(mean, 0.7 * scenario.walkers[i].speed_m_s) << "person " << i << ", seed " << seed;
+  }
+}
+
+TEST(Scenario, PeopleWalkAtTheirPaceAndKeepAway) {
+  for (const auto& [name, people] : {std::pair("office", 5U), std::pair("offices", 7U)}) {
+    const Scenario scenario = *make_scenario(name);
+    ASSERT_EQ(scenario.walkers.size(), people);
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) expect_polite_people(scenario, seed);
   }
 }
 
@@ -129,8 +133,8 @@ TEST(Scenario, TheHallReturnsAboutThreeThousandPoints) {
   }
 }
 
-TEST(Scenario, CorridorAndOfficeReturnNearlyEveryRay) {
-  for (const char* name : {"corridor", "office"})
+TEST(Scenario, CorridorAndOfficesReturnNearlyEveryRay) {
+  for (const char* name : {"corridor", "office", "offices"})
     EXPECT_GT(returns_in(name, 1).mean, 28000) << name;
 }
 
