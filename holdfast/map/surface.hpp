@@ -5,7 +5,9 @@
 
 namespace holdfast::map {
 
-enum class SurfaceKind : std::uint8_t { kPlane = 0, kLine = 1 };
+/// Clutter: points that neither planes nor a line explain; nothing can be matched there, and a
+/// coarser resolution would only hide it.
+enum class SurfaceKind : std::uint8_t { kPlane = 0, kLine = 1, kClutter = 2 };
 
 /// A plane or a line fitted to the points of the prior map around one cell. Lies in memory as it
 /// lies on disk. Lengths in metres, positions relative to the low corner of the tile (z: of the

@@ -223,12 +223,13 @@ constexpr double kGhostShare = 0.35;
 /// edge, which hold a strip of each of its sides.
 std::vector<Plane> that_stand_alone(std::vector<Plane> planes, Offsets points,
                                     const FitOptions& options) {
+  constexpr double kOwnShare = 0.5;
   std::stable_sort(planes.begin(), planes.end(),
                    [](const Plane& a, const Plane& b) { return a.support > b.support; });
   const double least = planes.empty() ? 0 : kGhostShare * planes.front().support;
   std::erase_if(planes, [&](const Plane& plane) {
     const int own = count_near(points, plane, 3.0 * options.noise_m);
-    if (own < std::max<double>(least, options.min_support)) return true;
+    if (plane.support < least || own < kOwnShare * plane.support) return true;
     remove_near(points, plane, 3.5 * options.noise_m);
     return false;
   });
@@ -293,6 +294,31 @@ void line_through(const Neighbourhood& n, double cell_m, const FitOptions& optio
                  static_cast<float>(sigma), saturated(m.count * n.density), SurfaceKind::kLine, 0});
 }
 
+/// Enough points to tell that they lie on no plane.
+bool is_clutter(const Neighbourhood& n, const FitOptions& options) {
+  return options.planes && options.lines && n.own.size() >= static_cast<std::size_t>(options.min_support);
+}
+
+/// Do these planes together explain the cell's own points, but for stray ones?
+bool explain(const std::vector<Surface>& planes, std::size_t first, const Neighbourhood& n,
+             const FitOptions& options) {
+  constexpr double kShare = 0.8;
+  int explained = 0;
+  for (const Eigen::Vector3d& d : n.own) {
+    for (std::size_t i = first; i < planes.size(); ++i) {
+      const Eigen::Vector3d from = d + n.center - planes[i].center.cast<double>();
+      if (std::abs(planes[i].normal.cast<double>().dot(from)) > 4.0 * options.noise_m) continue;
+      ++explained;
+      break;
+    }
+  }
+  return explained >= kShare * static_cast<double>(n.own.size());
+}
+
+Surface clutter_at(const Eigen::Vector3d& center) {
+  return {center.cast<float>(), Eigen::Vector3f::Zero(), 0, 1, SurfaceKind::kClutter, 0};
+}
+
 }  // namespace
 
 void fit_cell(const PointGrid& grid, const Cell& cell, const FitOptions& options,
@@ -305,9 +331,11 @@ void fit_cell(const PointGrid& grid, const Cell& cell, const FitOptions& options
       out.push_back(surface_of(*plane, n.center));
     } else if (n.all.size() >= static_cast<std::size_t>(options.min_support)) {
       several_planes(n, grid.cell_m(), options, out);
+      if (!explain(out, first, n, options)) out.resize(first);
     }
   }
   if (options.lines && out.size() == first) line_through(n, grid.cell_m(), options, out);
+  if (out.size() == first && is_clutter(n, options)) out.push_back(clutter_at(n.center));
   for (std::size_t i = first; i + 1 < out.size(); ++i) out[i].more = 1;
 }
 

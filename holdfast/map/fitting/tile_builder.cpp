@@ -59,6 +59,7 @@ double borrow_distance(const Surface& s, const Eigen::Vector3f& middle, double c
   const Eigen::Vector3f d = middle - s.center;
   const double along_normal = std::abs(s.normal.dot(d));
   const double lateral = std::sqrt(std::max(0.0, d.squaredNorm() - along_normal * along_normal));
+  if (s.kind == SurfaceKind::kClutter) return std::numeric_limits<double>::infinity();
   if (s.kind == SurfaceKind::kLine) return lateral + cell_m;  // planes first
   return std::hypot(along_normal, std::max(0.0, lateral - cell_m));
 }
@@ -244,7 +245,8 @@ TileBytes build_tile(const TilePoints& points, double cell_m, const FitOptions& 
     append_level(level, result.bytes);
     header.levels[i] = level.header;
     for (const Surface& s : level.surfaces) {
-      ++(s.kind == SurfaceKind::kPlane ? result.planes : result.lines)[i];
+      result.planes[i] += s.kind == SurfaceKind::kPlane ? 1 : 0;
+      result.lines[i] += s.kind == SurfaceKind::kLine ? 1 : 0;
     }
   }
   header.file_size = result.bytes.size();
