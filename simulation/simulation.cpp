@@ -118,6 +118,7 @@ struct Simulation::Parts {
   LidarSensor lidar;
   Surroundings around;
   std::vector<SimulatedEvent> events;
+  std::optional<TrueGeometry> geometry;  ///< made when asked for
 
   std::size_t next_imu = 0;
   std::size_t next_scan = 0;    ///< the next to be cast
@@ -288,6 +289,19 @@ std::vector<StampedPose> Simulation::truth() const {
 SE3 Simulation::initial_pose() {
   parts_->cast_pending();
   return parts_->drive.at(parts_->first_pose_time.value_or(0)).T_map_body;
+}
+
+std::vector<TrueReturn> Simulation::true_geometry(const Scan& scan) {
+  edges();
+  Scan since_start = scan;
+  since_start.stamp -= kEpoch;
+  return true_returns(since_start, parts_->options.lidar, parts_->drive, parts_->caster,
+                      parts_->walkers, *parts_->geometry);
+}
+
+const std::vector<Segment>& Simulation::edges() {
+  if (!parts_->geometry) parts_->geometry.emplace(parts_->scenario.world);
+  return parts_->geometry->edges();
 }
 
 const std::vector<SimulatedEvent>& Simulation::events() const { return parts_->events; }

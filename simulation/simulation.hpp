@@ -14,6 +14,7 @@
 #include "simulation/scenario.hpp"
 #include "simulation/sensors/imu_model.hpp"
 #include "simulation/sensors/lidar_model.hpp"
+#include "simulation/truth/true_geometry.hpp"
 
 namespace holdfast::simulation {
 
@@ -74,6 +75,13 @@ class Simulation : public SensorSource {
   std::vector<StampedPose> truth() const;
   /// T_map_body at the first scan's pose time (its last point). Casts that scan if next() has not.
   SE3 initial_pose();
+
+  /// The surfaces behind the returns of a scan of this simulation, one entry a point (also of a
+  /// scan from which points were taken away). Edges are those of the world as driven; the first
+  /// call takes up to some seconds to find them.
+  std::vector<TrueReturn> true_geometry(const Scan& scan);
+  /// All true edges of the world as driven; likewise.
+  const std::vector<Segment>& edges();
 
   const std::vector<SimulatedEvent>& events() const;
   const SimulationOptions& options() const;

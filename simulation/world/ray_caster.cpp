@@ -75,6 +75,7 @@ void RayCaster::cast(const RayPacket& rays, float min_range, float max_range,
     const float dot = nx * rays.dx[i] + ny * rays.dy[i] + nz * rays.dz[i];
     hits.range[i] = met ? packet.ray.tfar[i] : std::numeric_limits<float>::infinity();
     hits.cos_incidence[i] = met ? std::abs(dot) / std::sqrt(nx * nx + ny * ny + nz * nz) : 0;
+    hits.triangle[i] = met ? packet.hit.primID[i] : 0;
     hits.material[i] = met ? material_of_[packet.hit.primID[i]] : std::uint16_t{0};
   }
 }

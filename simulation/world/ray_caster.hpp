@@ -21,6 +21,7 @@ struct alignas(32) HitPacket {
   std::array<float, RayPacket::kSize> range;             ///< metres; infinite where nothing was met
   std::array<float, RayPacket::kSize> cos_incidence;     ///< 0 (grazing) to 1 (square)
   std::array<std::uint16_t, RayPacket::kSize> material;  ///< index into World::materials
+  std::array<std::uint32_t, RayPacket::kSize> triangle;  ///< of the world; 0 where nothing was met
 };
 
 /// Casts rays into a world's triangles. Thread-safe once made; same bits for the same rays.

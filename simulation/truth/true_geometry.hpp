@@ -1,0 +1,60 @@
+#pragma once
+
+#include <vector>
+
+#include "holdfast/core/sensor_data.hpp"
+#include "simulation/motion/drive.hpp"
+#include "simulation/sensors/lidar_model.hpp"
+#include "simulation/truth/segment_grid.hpp"
+#include "simulation/world/ray_caster.hpp"
+#include "simulation/world/walkers.hpp"
+
+namespace holdfast::simulation {
+
+/// The surface behind a LiDAR return.
+struct TrueReturn {
+  Eigen::Vector3d point_map;   ///< where the ray met the surface, without noise
+  Eigen::Vector3d normal_map;  ///< of the surface, unit length, towards the LiDAR
+  /// From point_map to the nearest true edge; at most TrueGeometry::kReach, which also stands for
+  /// "further away".
+  double edge_distance_m = 0;
+  Eigen::Vector3d edge_along_map =
+      Eigen::Vector3d::Zero();  ///< unit; zero without an edge in reach
+  bool person = false;          ///< met someone walking: no edges are looked for
+};
+
+/// What a world's surfaces are like, for judging features: edges as `true_edges` defines them, and
+/// the normals of its triangles. Thread-safe once made, which takes up to some seconds.
+class TrueGeometry {
+ public:
+  /// Edges further away than this, in metres, are not looked for.
+  static constexpr double kReach = SegmentGrid::kReach;
+
+  /// `world` is used later and must outlive this.
+  explicit TrueGeometry(const World& world);
+
+  const std::vector<Segment>& edges() const { return edges_; }
+
+  struct NearEdge {
+    double distance_m = kReach;
+    Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< unit; zero without an edge in reach
+  };
+  NearEdge nearest_edge(const Eigen::Vector3d& p_map) const;
+
+  /// Of a triangle of the world, unit length, on its front.
+  Eigen::Vector3d normal(std::size_t triangle) const;
+
+ private:
+  const World& world_;
+  std::vector<Segment> edges_;
+  SegmentGrid grid_;
+};
+
+/// Casts the ray of each return of `scan` again, from where the LiDAR was at the return's own time,
+/// and says what it met: one entry a point, in the order of the points. Times of the scan count
+/// from the start of the log.
+std::vector<TrueReturn> true_returns(const Scan& scan, const LidarModel& lidar, const Drive& drive,
+                                     const RayCaster& caster, const Walkers& walkers,
+                                     const TrueGeometry& geometry);
+
+}  // namespace holdfast::simulation
