@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "holdfast/estimator/quadratic.hpp"
+#include "holdfast/estimator/factors/quadratic.hpp"
 
 namespace holdfast::estimator {
 

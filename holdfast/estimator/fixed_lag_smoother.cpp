@@ -150,7 +150,10 @@ void FixedLagSmoother::step_newest(const NodeState& linearised_at, OptimiseRepor
   if (last.has_map) last.map.add_to(last.x, block, report.cost);
   const Eigen::LLT<Matrix18d> llt(block.H);
   report.solved = llt.info() == Eigen::Success;
-  if (!report.solved) return;
+  if (!report.solved) {
+    last.has_map = false;  // the only thing here that can be at fault
+    return;
+  }
   information_ = block.H;
   const Vector18d step = -llt.solve(block.g);
   report.cost += step.dot(block.g);

@@ -4,46 +4,14 @@
 #include <optional>
 #include <vector>
 
-#include "holdfast/estimator/between_factor.hpp"
 #include "holdfast/estimator/chain_system.hpp"
-#include "holdfast/estimator/imu_factor.hpp"
-#include "holdfast/estimator/map_factor.hpp"
-#include "holdfast/estimator/prior_factor.hpp"
+#include "holdfast/estimator/factors/between_factor.hpp"
+#include "holdfast/estimator/factors/imu_factor.hpp"
+#include "holdfast/estimator/factors/map_factor.hpp"
+#include "holdfast/estimator/factors/prior_factor.hpp"
+#include "holdfast/estimator/smoother_options.hpp"
 
 namespace holdfast::estimator {
-
-struct SmootherConfig {
-  int window = 10;  ///< nodes, at least 3
-  Preintegration::Noise noise;
-  double gravity_walk = 1e-4;  ///< m/s^2 per sqrt(s)
-  /// Of a bias that jumps (FixedLagSmoother::bias_jump_gain).
-  double accel_jump_m_s2 = 0.5;
-  double gyro_jump_rad_s = 0.05;
-  /// Positive: the printed weight w_imu on the squared norm of the motion's residual instead of its
-  /// covariance (article 3.3.2: 1.2).
-  double imu_weight = 0;
-};
-
-struct OptimiseOptions {
-  int max_measurements = 4;    ///< how often the newest node's map residual is linearised at most
-  int min_measurements = 1;    ///< and at least, where a robust loss narrows from call to call
-  int max_linearisations = 3;  ///< of the other nodes
-  double converged_m = 1e-4;   ///< change of the newest node below which another step is idle
-  double converged_rad = 1e-5;
-  /// Turn of any node beyond which the chain is linearised again: its residuals are linear in all
-  /// but rotations and change by g dt / 2 times the square of this.
-  double relinearise_rad = 1e-3;
-};
-
-struct OptimiseReport {
-  bool solved = false;  ///< false: the system was not positive definite; the state was left alone
-  bool converged = false;  ///< the last step was below the limits
-  bool map_used = false;   ///< the newest node has a map residual
-  int measurements = 0;
-  int linearisations = 0;
-  double cost = 0;                           ///< of all factors at the last linearised optimum
-  Vector18d correction = Vector18d::Zero();  ///< newest node minus its prediction
-};
 
 /// Estimate of the last few nodes from IMU, prior map and odometry (article 3.3.2): a chain of
 /// nodes in which each is linked to the next. The newest node's map residual is linearised anew in

@@ -1,9 +1,9 @@
 #include <Eigen/Eigenvalues>
 
-#include "holdfast/estimator/between_factor.hpp"
-#include "holdfast/estimator/imu_factor.hpp"
-#include "holdfast/estimator/map_factor.hpp"
-#include "holdfast/estimator/prior_factor.hpp"
+#include "holdfast/estimator/factors/between_factor.hpp"
+#include "holdfast/estimator/factors/imu_factor.hpp"
+#include "holdfast/estimator/factors/map_factor.hpp"
+#include "holdfast/estimator/factors/prior_factor.hpp"
 #include "tests/estimator/scene.hpp"
 
 namespace holdfast::estimator {

@@ -65,6 +65,37 @@ TEST(FixedLagSmoother, HasTheSameBitsInTwoRuns) {
   EXPECT_EQ(std::memcmp(covariances[0].data(), covariances[1].data(), sizeof(Matrix18d)), 0);
 }
 
+TEST(FixedLagSmoother, StaysWellPosedOverAMinuteOfPreciseScans) {
+  ChainOptions options;
+  options.nodes = 600;
+  options.imu = {1e-4, 1e-3, 1e-7, 1e-6};  // a perfect IMU: the most unequal information
+  options.position_sigma_m = 1e-4;
+  options.rotation_sigma_rad = 2e-5;
+  const Chain chain = simulate(8, options);
+  FixedLagSmoother smoother(chain.config());
+  run(chain, smoother, true, options.nodes, [&](int k, const OptimiseReport& report) {
+    ASSERT_TRUE(report.solved && report.converged) << k;
+    const Matrix18d P = smoother.covariance_of_newest();
+    ASSERT_EQ(P.llt().info(), Eigen::Success) << k;
+    const Vector18d error = smoother.newest().minus(chain.truth[k]);
+    ASSERT_LT(squared(error, P), 74) << k;  // 1 in 10^8 for each of 600
+  });
+}
+
+TEST(FixedLagSmoother, WhatIsNotPositiveDefiniteIsReported) {
+  const Chain chain = simulate(9);
+  FixedLagSmoother smoother(chain.config());
+  run(chain, smoother, false, 5);
+  smoother.push(chain.imu[5]);
+  registration::NormalEquations broken;
+  broken.H = -1e12 * registration::Matrix9d::Identity();
+  const auto report = smoother.optimise(
+      [&](const NodeState& x) { return std::optional<MapFactor>(MapFactor(broken, x)); });
+  EXPECT_FALSE(report.solved);
+  EXPECT_TRUE(smoother.newest().T_map_body.translation.allFinite());
+  EXPECT_FALSE(report.map_used);
+}
+
 TEST(FixedLagSmoother, HoldsAsManyNodesAsItsWindow) {
   const Chain chain = simulate(3);
   FixedLagSmoother smoother(chain.config(5));

@@ -1,4 +1,4 @@
-#include "holdfast/estimator/map_factor.hpp"
+#include "holdfast/estimator/factors/map_factor.hpp"
 
 namespace holdfast::estimator {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "holdfast/estimator/quadratic.hpp"
+#include "holdfast/estimator/factors/quadratic.hpp"
 
 namespace holdfast::estimator {
 

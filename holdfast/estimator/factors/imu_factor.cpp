@@ -1,4 +1,4 @@
-#include "holdfast/estimator/imu_factor.hpp"
+#include "holdfast/estimator/factors/imu_factor.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "holdfast/estimator/factors/quadratic.hpp"
 #include "holdfast/estimator/preintegration.hpp"
-#include "holdfast/estimator/quadratic.hpp"
 
 namespace holdfast::estimator {
 

@@ -1,4 +1,4 @@
-#include "holdfast/estimator/prior_factor.hpp"
+#include "holdfast/estimator/factors/prior_factor.hpp"
 
 #include <Eigen/Cholesky>
 

@@ -1,4 +1,4 @@
-#include "holdfast/estimator/between_factor.hpp"
+#include "holdfast/estimator/factors/between_factor.hpp"
 
 #include <Eigen/Cholesky>
 #include <cmath>
