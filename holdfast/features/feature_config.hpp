@@ -16,7 +16,7 @@ struct FeatureConfig {
   double window_m = 0.3;
   int min_side_points = 4;
   double min_turn_deg = 30.0;
-  double plane_spacing_m = 0.05;
+  double plane_spacing_m = 0.1;
   double range_sigma_per_m = 2e-4;
   double beam_spread_rad = 3e-4;
   double roughness_m = 0.003;
@@ -55,13 +55,13 @@ struct RangeNoise {
   double sigma_per_m = 0;
   double spread_rad = 0;
 
-  /// Variance (m^2) of a point's distance from a surface whose normal and ray enclose the angle of
-  /// cosine `cosine`, at `range` metres: a range error counts by its part along the normal, and the
-  /// spot on the surface is smeared along the ray by range * spread * tan(incidence).
-  double normal_variance(double range, double cosine_sq) const {
-    const double along_ray = sigma_m * sigma_m + sigma_per_m * sigma_per_m * range * range;
-    const double spot = spread_rad * spread_rad * range * range;
-    return along_ray * cosine_sq + spot * (1.0 - cosine_sq);
+  /// Variance (m^2) of a point's distance from a surface that it lies on, at a squared range (m^2),
+  /// where ray and normal enclose an angle of squared cosine `cosine_sq`: a range error counts by
+  /// its part along the normal, and the spot on the surface is smeared along the ray by
+  /// range * spread * tan(incidence).
+  double normal_variance(double range_sq, double cosine_sq) const {
+    const double along_ray = sigma_m * sigma_m + sigma_per_m * sigma_per_m * range_sq;
+    return along_ray * cosine_sq + spread_rad * spread_rad * range_sq * (1.0 - cosine_sq);
   }
 };
 

@@ -12,6 +12,7 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr double kWidest = 3.0;         // windows grow to this many times window_m for their points
+constexpr double kStride = 0.12;        // of a window: from one to the next that is looked at
 constexpr double kClear = 0.5;          // of a window that must be seen on each side
 constexpr float kGapSteps = 3.5F;       // a step this much longer than usual: returns are missing
 constexpr float kGapInGrid = 12.0F;     // likewise where azimuths are random: once in 4000 steps
@@ -52,6 +53,7 @@ struct RowFitter::Bend {
 RowFitter::RowFitter(const FeatureConfig& config, const RangeNoise& noise)
     : window_sq_(config.window_m * config.window_m),
       widest_sq_(kWidest * kWidest * window_sq_),
+      stride_sq_(static_cast<float>(kStride * kStride * window_sq_)),
       clear_sq_(kClear * kClear * window_sq_),
       roughness_sq_(config.roughness_m * config.roughness_m),
       least_side_(static_cast<std::uint32_t>(config.min_side_points)),
@@ -71,6 +73,7 @@ void RowFitter::fit(const ScanRows& rows, std::vector<WindowFit>& fits,
   rows_ = &rows;
   fits.assign(rows.size(), {});
   sums_.resize(rows.size() + 1);
+  ranges_.resize(rows.size());
   for (std::size_t row = 0; row < rows.rows(); ++row) {
     const std::uint32_t begin = rows.begin[row];
     const std::uint32_t end = rows.begin[row + 1];
@@ -92,6 +95,7 @@ void RowFitter::fit(const ScanRows& rows, std::vector<WindowFit>& fits,
 void RowFitter::add_up(std::uint32_t begin, std::uint32_t end) {
   Sums s;
   sums_[begin] = s;
+  for (std::uint32_t i = begin; i < end; ++i) ranges_[i] = rows_->points[i].head<2>().norm();
   for (std::uint32_t i = begin; i < end; ++i) {
     const double x = rows_->points[i].x();
     const double y = rows_->points[i].y();
@@ -123,19 +127,16 @@ float RowFitter::typical_step(std::uint32_t begin, std::uint32_t end) {
 RowFitter::Break RowFitter::break_after(std::uint32_t i, float step) const {
   const Vector3f& p = rows_->points[i];
   const Vector3f& q = rows_->points[i + 1];
-  const float p_sq = p.x() * p.x() + p.y() * p.y();
-  const float q_sq = q.x() * q.x() + q.y() * q.y();
-  const float p_range = std::sqrt(p_sq);
-  const float q_range = std::sqrt(q_sq);
-  const float turn = (p.x() * q.y() - p.y() * q.x()) / (p_range * q_range + 1e-9F);
-  const float steps = turn / (step == 0 ? 1e-9F : step);
-  if (steps > (rows_->regular ? kGapSteps : kGapInGrid) || steps < -1.0F) return Break::kGap;
-  const float change = q_range - p_range;
+  const float product = ranges_[i] * ranges_[i + 1];
+  // The sine of the turn times both ranges, positive in the sense of the row.
+  const float area = (p.x() * q.y() - p.y() * q.x()) * (step < 0 ? -1.0F : 1.0F);
+  const float usual = std::abs(step) * product;
+  if (area > (rows_->regular ? kGapSteps : kGapInGrid) * usual || area < -usual) return Break::kGap;
+  const float change = ranges_[i + 1] - ranges_[i];
   const float size = std::abs(change);
   const auto least = static_cast<float>(kJumpSigmas * noise_.sigma_m);
-  if (size < least || size * kGrazing < std::abs(turn) * std::min(p_range, q_range)) {
-    return Break::kNone;
-  }
+  if (size < least) return Break::kNone;
+  if (size * kGrazing * std::max(ranges_[i], ranges_[i + 1]) < std::abs(area)) return Break::kNone;
   return change > 0 ? Break::kNearerBefore : Break::kNearerAfter;
 }
 
@@ -165,8 +166,7 @@ double RowFitter::variance_at(const Line& line, const Vector3f& p) const {
   const double range_sq = p.squaredNorm();
   const double along = line.normal().dot(p.head<2>().cast<double>());
   const double round = line.spread * line.spread / range_sq;
-  return noise_.normal_variance(std::sqrt(range_sq), along * along / range_sq) + roughness_sq_ +
-         0.2 * round;
+  return noise_.normal_variance(range_sq, along * along / range_sq) + roughness_sq_ + 0.2 * round;
 }
 
 bool RowFitter::is_straight(const Line& line, double variance) const {
@@ -303,8 +303,11 @@ void RowFitter::fit_segment(const Segment& segment, std::vector<WindowFit>& fits
   if (segment.before == Break::kNearerAfter) add_border(segment, false, edges);
   const std::size_t first_crease = edges.size();
   double best = 0;
-  std::uint32_t lo = segment.begin, hi = segment.begin;
+  std::uint32_t lo = segment.begin, hi = segment.begin, last = segment.begin;
   for (std::uint32_t i = segment.begin; i < segment.end; ++i) {
+    // Windows of neighbours are all but the same where points lie dense.
+    if (i > last && (p[i] - p[last]).squaredNorm() < stride_sq_) continue;
+    last = i;
     for (; lo < i; ++lo) {
       const double far = (p[lo] - p[i]).squaredNorm();
       if (far <= window_sq_ || (i - lo <= least_side_ && far <= widest_sq_)) break;

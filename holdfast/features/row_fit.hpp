@@ -63,12 +63,15 @@ class RowFitter {
   double crease(std::uint32_t lo, std::uint32_t i, std::uint32_t hi, RowEdge& edge) const;
   void add_border(const Segment& segment, bool at_end, std::vector<RowEdge>& edges) const;
 
-  double window_sq_, widest_sq_, clear_sq_, roughness_sq_, least_turn_sine_sq_;
+  double window_sq_, widest_sq_;
+  float stride_sq_;
+  double clear_sq_, roughness_sq_, least_turn_sine_sq_;
   std::uint32_t least_side_;
   RangeNoise noise_;
   std::array<double, 64> chi_limit_;  ///< by number of points: limit of variance / expected
   const ScanRows* rows_ = nullptr;
-  std::vector<Sums> sums_;  ///< sums_[i]: of points [0, i)
+  std::vector<Sums> sums_;     ///< sums_[i]: of points [0, i)
+  std::vector<float> ranges_;  ///< from the lidar's axis
   std::vector<float> steps_;
 };
 

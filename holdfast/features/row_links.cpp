@@ -54,7 +54,8 @@ RowLinker::Place RowLinker::place(std::int32_t row, std::uint32_t at) const {
 RowLinker::Place RowLinker::find(std::int32_t row, int bin) const {
   if (row < 0 || row >= static_cast<std::int32_t>(rows_->rows())) return {};
   const std::uint32_t* cells = &table_[static_cast<std::size_t>(row) * kBins];
-  for (const int b : {bin, (bin + 1) % kBins, (bin + kBins - 1) % kBins}) {
+  for (const int step : {0, 1, -1, 2, -2}) {
+    const int b = (bin + step) & (kBins - 1);
     if (cells[b] > 0) return place(row, cells[b] - 1);
   }
   return {};
