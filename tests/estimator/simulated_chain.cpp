@@ -91,47 +91,49 @@ MapFactor PoseObservation::at(const NodeState& x) const {
   e.g.segment<3>(0) = wp * p;
   e.g.segment<3>(3) = wr * J.transpose() * r;
   e.cost = wp * p.squaredNorm() + wr * r.squaredNorm();
-  return {
-    e, x Chain simulate(std::uint64_t seed, const ChainOptions& options) {
-      RandomStream random(seed, "chain");
-      Chain chain{options, {}, {}, {}, {{}}, {{}}, {{}}};
-      const double dt = to_seconds(kPerScan * kPeriod);
-      NodeState x = path(0);
-      x.gravity_map = kGravity;
-      x.accel_bias = random_vector(random, 0.05);
-      x.gyro_bias = random_vector(random, 0.005);
-      chain.truth.push_back(x);
-      set_start(chain, random);
-      for (int k = 1; k < options.nodes; ++k) {
-        if (k == options.jump_in_interval) {
-          x.accel_bias += Vector3d(0.3, 0, 0);
-          x.gyro_bias += Vector3d(0, 0.03, 0);
-        }
-        const NodeState before = x;
-        chain.imu.push_back(noisy_readings(before, (k - 1) * dt, random, options.imu));
-        x = path(k * dt);
-        x.gravity_map = before.gravity_map + random_vector(random, 1e-4 * std::sqrt(dt));
-        x.accel_bias =
-            before.accel_bias + random_vector(random, options.imu.accel_bias_walk * std::sqrt(dt));
-        x.gyro_bias =
-            before.gyro_bias + random_vector(random, options.imu.gyro_bias_walk * std::sqrt(dt));
-        chain.truth.push_back(x);
-        observe(chain, before, x, random);
-      }
-      return chain;
-    }
+  return {e, x};
+}
 
-    void run(const Chain& chain, FixedLagSmoother& smoother, bool with_odometry, int nodes,
-             const std::function<void(int, const OptimiseReport&)>& each) {
-      smoother.reset(chain.start, chain.start_covariance);
-      for (int k = 1; k < nodes; ++k) {
-        std::optional<BetweenFactor> between;
-        if (with_odometry) between.emplace(chain.odometry[k], RobustLoss::kNone, 3.0);
-        smoother.push(chain.imu[k], between);
-        const auto report = smoother.optimise(
-            [&](const NodeState& x) { return std::optional(chain.observed[k].at(x)); });
-        if (each) each(k, report);
-      }
+Chain simulate(std::uint64_t seed, const ChainOptions& options) {
+  RandomStream random(seed, "chain");
+  Chain chain{options, {}, {}, {}, {{}}, {{}}, {{}}};
+  const double dt = to_seconds(kPerScan * kPeriod);
+  NodeState x = path(0);
+  x.gravity_map = kGravity;
+  x.accel_bias = random_vector(random, 0.05);
+  x.gyro_bias = random_vector(random, 0.005);
+  chain.truth.push_back(x);
+  set_start(chain, random);
+  for (int k = 1; k < options.nodes; ++k) {
+    if (k == options.jump_in_interval) {
+      x.accel_bias += Vector3d(0.3, 0, 0);
+      x.gyro_bias += Vector3d(0, 0.03, 0);
     }
+    const NodeState before = x;
+    chain.imu.push_back(noisy_readings(before, (k - 1) * dt, random, options.imu));
+    x = path(k * dt);
+    x.gravity_map = before.gravity_map + random_vector(random, 1e-4 * std::sqrt(dt));
+    x.accel_bias =
+        before.accel_bias + random_vector(random, options.imu.accel_bias_walk * std::sqrt(dt));
+    x.gyro_bias =
+        before.gyro_bias + random_vector(random, options.imu.gyro_bias_walk * std::sqrt(dt));
+    chain.truth.push_back(x);
+    observe(chain, before, x, random);
+  }
+  return chain;
+}
 
-  }  // namespace holdfast::estimator::testing
+void run(const Chain& chain, FixedLagSmoother& smoother, bool with_odometry, int nodes,
+         const std::function<void(int, const OptimiseReport&)>& each) {
+  smoother.reset(chain.start, chain.start_covariance);
+  for (int k = 1; k < nodes; ++k) {
+    std::optional<BetweenFactor> between;
+    if (with_odometry) between.emplace(chain.odometry[k], RobustLoss::kNone, 3.0);
+    smoother.push(chain.imu[k], between);
+    const auto report = smoother.optimise(
+        [&](const NodeState& x) { return std::optional(chain.observed[k].at(x)); });
+    if (each) each(k, report);
+  }
+}
+
+}  // namespace holdfast::estimator::testing

@@ -27,9 +27,6 @@ struct PoseObservation {
 
   MapFactor at(const NodeState& x) const;
 };
-}
-}
-;
 
 /// Node k > 0 has segment, increment and observation k; node 0 has the start.
 struct Chain {
