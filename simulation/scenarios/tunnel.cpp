@@ -67,17 +67,14 @@ struct Recess {
   WallOpening opening;
 };
 
-WallOpening door() { return {0, 1.3, kKerbHeight, 2.4, 0.25, false, materials::kPaintedMetal}; }
-WallOpening niche(double depth) {
-  return {0, 1.7, kKerbHeight, 2.4, depth, false, materials::kConcrete};
-}
+WallOpening door() { return {0, 1.1, kKerbHeight, 2.3, 0.12, false, materials::kPaintedMetal}; }
+WallOpening niche() { return {0, 1.3, kKerbHeight, 2.2, 0.35, false, materials::kConcrete}; }
 
 // From 75 to 145 m the tube is bare, and what is nearest beside that stands back in the wall: seen
-// from the 30 m in the middle (95 to 125 m) nothing stops a slip along the axis.
+// from the 30 m in the middle (95 to 125 m) next to nothing stops a slip along the axis.
 std::vector<Recess> recesses() {
-  return {{21.3, false, door()},     {36.0, true, niche(0.8)}, {63.4, false, door()},
-          {72.7, true, niche(0.5)},  {145.6, true, door()},    {157.8, false, niche(0.8)},
-          {176.2, true, niche(0.6)}, {191.0, false, door()}};
+  return {{24.4, false, door()}, {62.9, true, niche()},   {73.2, false, door()},
+          {145.6, true, door()}, {157.8, false, niche()}, {191.0, false, door()}};
 }
 
 /// One side of the tube between two sections, seen from within.
@@ -173,10 +170,10 @@ void add_forecourt(WorldBuilder& build, double s, double out) {
   build.wall({from.at(-y), to.at(-y), 0, 3.0, materials::kConcrete, {}});
   build.wall({to.at(y), from.at(y), 0, 3.0, materials::kConcrete, {}});
   add_portal_face(build, portal, -out);
-  const Section middle = section(s + out * 14);
-  const Vector3d kiosk = middle.at(5.9, 1.2);
-  build.box({kiosk, {1.8, 1.6, 2.4}, middle.heading}, materials::kPlaster);
-  add_pole(build, {section(s + out * 4).at(-6.2), middle.heading}, 5);
+  const Section middle = section(s + out * 5);
+  const Vector3d kiosk = middle.at(6.1, 1.2);
+  build.box({kiosk, {1.8, 1.4, 2.4}, middle.heading}, materials::kPlaster);
+  add_pole(build, {section(s + out * 4).at(-6.4), middle.heading}, 5);
 }
 
 /// Turned so that +x points from the wall to the axis.
@@ -189,27 +186,24 @@ Placement on_wall(double s, bool left) {
 void add_equipment(WorldBuilder& build) {
   const Material& metal = materials::kPaintedMetal;
   const auto cabinet = [&](double s, bool left) {
-    add_wall_box(build, on_wall(s, left), kKerbHeight, {0.38, 0.8, 1.5}, metal);
+    add_wall_box(build, on_wall(s, left), kKerbHeight, {0.22, 0.6, 1.1}, metal);
   };
   const auto sign = [&](double s, bool left) {
-    add_wall_box(build, on_wall(s, left), 2.1, {0.65, 0.06, 0.65}, metal);
+    add_wall_box(build, on_wall(s, left), 2.3, {0.42, 0.05, 0.42}, metal);
   };
   const auto lamp = [&](double s, double y) {
     const Section at = section(s);
     build.object({"lamp", true}, [&] {
-      build.box({at.at(y, 4.45), {1.3, 0.35, 0.25}, at.heading}, metal);
+      build.box({at.at(y, 4.45), {1.2, 0.3, 0.15}, at.heading}, metal);
     });
   };
-  cabinet(14.2, false);
-  cabinet(50.9, true);
-  cabinet(181.4, false);
-  sign(29.0, true);
-  sign(55.3, false);
+  cabinet(11.2, false);
+  cabinet(39.0, true);
+  cabinet(179.4, false);
+  sign(50.7, false);
   sign(168.1, true);
-  lamp(9.0, 2.4);
-  lamp(42.5, -2.4);
-  lamp(171.5, -2.4);
-  lamp(195.5, 2.4);
+  lamp(27.0, -2.4);
+  lamp(173.0, 2.4);
   const auto standing = [&](double s, double y, const char* name, const Vector3d& size) {
     const Section at = section(s);
     build.object({name}, [&] { build.box({at.at(y, 0.5 * size.z()), size, at.heading}, metal); });
@@ -227,9 +221,10 @@ void add_equipment(WorldBuilder& build) {
 }  // namespace
 
 // A road tunnel: walls, vault and kerbs hold the robot in all directions but one. Doors, niches,
-// cabinets, signs and lamps at uneven distances of 10 to 30 m tell a little about that one; the
-// portals' faces look outwards and cannot be seen from within. x points along the first straight,
-// its origin lies on the axis in the first portal.
+// cabinets, signs and lamps 10 to 25 m apart tell a little about that one: within the tube 20 to
+// 200 of 28 000 returns lie on faces across the axis, in the bare stretch 4 to 10. The portals'
+// faces look outwards and cannot be seen from within. x points along the first straight, its origin
+// lies on the axis in the first portal.
 Scenario make_tunnel() {
   WorldBuilder build;
   add_tube(build);

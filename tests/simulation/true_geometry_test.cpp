@@ -149,6 +149,7 @@ TEST(TrueGeometry, NoiseLiesAlongTheRayAndLeavesTheTruthWhereItIs) {
 TEST(TrueGeometry, KnowsReturnsFromPeople) {
   const auto simulation = make(noise_free("office", 6));
   std::size_t people = 0;
+  std::size_t off = 0;
   for (const Scan& scan : record(*simulation).scans) {
     const auto truth = simulation->true_geometry(scan);
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -158,13 +159,14 @@ TEST(TrueGeometry, KnowsReturnsFromPeople) {
                               simulation->options().lidar.T_body_lidar;
       const Vector3d p = T_map_lidar * position(scan.points[i]);
       // The sensor moves a leg on as a whole for up to 1.1 ms, with the velocity of its middle; a
-      // foot swings up to 0.9 m/s faster than that.
-      const double off = truth[i].normal_map.dot(p - truth[i].point_map);
-      ASSERT_LT(std::abs(off), 1e-3) << i;
+      // foot swings up to 0.9 m/s faster than that: 1 mm, which a ray that grazes the leg's rim
+      // (2 % of the width lie within that of one) turns into more.
+      off += std::abs(truth[i].normal_map.dot(p - truth[i].point_map)) > 1e-3 ? 1 : 0;
       ASSERT_EQ(truth[i].edge_distance_m, TrueGeometry::kReach);
     }
   }
   EXPECT_GT(people, 1000U);
+  EXPECT_LT(off, people / 50);
 }
 
 }  // namespace
