@@ -13,7 +13,7 @@
 namespace holdfast::benchmarks {
 namespace {
 
-constexpr std::array<BenchInfo, 4> kBenches = {{
+constexpr std::array<BenchInfo, 5> kBenches = {{
     {"step",
      "time of a step, beside a k-d-tree registration and plain reading of the log",
      {1, 1},
@@ -26,6 +26,11 @@ constexpr std::array<BenchInfo, 4> kBenches = {{
      20,
      measure_import},
     {"simulator", "speed of the simulator, in process and to a bag", {1, 1}, 20, measure_simulator},
+    {"features",
+     "edges and planes of scans: counts, precision, recall and time of each smoothness",
+     {1, 1},
+     10,
+     measure_features},
 }};
 
 constexpr std::uint64_t kMostSeeds = 1000;

@@ -22,4 +22,9 @@ Result<BenchReport> measure_import(const BenchOptions& options);
 /// Speed of the simulator for a 16 x 1800 LiDAR.
 Result<BenchReport> measure_simulator(const BenchOptions& options);
 
+/// Features by `printed`, `log` and `fitted` in the simulated worlds: how many, how many of them
+/// right by the simulator's true edges and normals, how many of what is there found, and the time
+/// of a scan on one thread. `threads` serves the simulation only.
+Result<BenchReport> measure_features(const BenchOptions& options);
+
 }  // namespace holdfast::benchmarks

@@ -131,7 +131,10 @@ RowFitter::Break RowFitter::break_after(std::uint32_t i, float step) const {
   // The sine of the turn times both ranges, positive in the sense of the row.
   const float area = (p.x() * q.y() - p.y() * q.x()) * (step < 0 ? -1.0F : 1.0F);
   const float usual = std::abs(step) * product;
-  if (area > (rows_->regular ? kGapSteps : kGapInGrid) * usual || area < -usual) return Break::kGap;
+  if (area < -usual) return Break::kGap;
+  // Dark and polished surfaces return some rays only: what is shorter than a window is no hole.
+  const bool far = (q - p).squaredNorm() > static_cast<float>(window_sq_);
+  if (far && area > (rows_->regular ? kGapSteps : kGapInGrid) * usual) return Break::kGap;
   const float change = ranges_[i + 1] - ranges_[i];
   const float size = std::abs(change);
   const auto least = static_cast<float>(kJumpSigmas * noise_.sigma_m);
