@@ -75,6 +75,16 @@ Scenario make_corridor() {
   add_cabinet_on_wall(build, 17.4, false);
   add_cabinet_on_wall(build, 46.4, false);
 
+  build.spare([&] {
+    for (const double x : {5.4, 19.6, 25.9, 40.8}) {
+      add_crate(build, {{x, 0.19}, 0}, {0.8 + 0.02 * x, 0.34, 0.5 + 0.02 * x});
+    }
+    for (const double x : {5.6, 18.6, 33.3, 47.5}) {
+      add_crate(build, {{x, kWidth - 0.19}, 0}, {0.6, 0.34, 1.5 - 0.02 * x}, materials::kWood);
+    }
+    add_board(build, 22.9, false, 1.4);
+  });
+
   Scenario scenario;
   scenario.name = "corridor";
   scenario.world = build.build();

@@ -47,6 +47,15 @@ Scenario make_hall() {
     build.cylinder({at.x(), at.y(), 0}, 0.23, kHeight, materials::kConcrete, 64);
   }
 
+  build.spare([&] {
+    for (const double y : {6.0, 9.2}) add_bench(build, {{0.7, y}, 0}, 1.8);
+    add_bench(build, {{19.2, 7.0}, 0}, 2.0);
+    for (const double x : {8.0, 13.5}) add_plant(build, {x, 14.3});
+    add_plant(build, {7.0, 0.7});
+    add_crate(build, {{14.2, 7.9}, 0.4}, {1.6, 0.6, 1.1}, materials::kWood);
+    add_partition(build, {{5.6, 4.9}, 0.8}, 1.2, 1.9);
+  });
+
   Scenario scenario;
   scenario.name = "hall";
   scenario.world = build.build();

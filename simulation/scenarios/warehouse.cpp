@@ -48,6 +48,13 @@ Scenario make_warehouse() {
     add_rack(build, {{20, kFirstRow + row * kRowStep}, kQuarter}, plan);
   }
 
+  build.spare([&] {
+    for (const double y : {5.0, 7.5, 16.0, 18.5}) {
+      add_crate(build, {{38.9, y}, 0.05 * y}, {1.0, 1.2, 0.6 + 0.06 * y});
+    }
+    for (const double x : {12.0, 17.4, 25.0}) add_crate(build, {{x, 23.2}, 0}, {1.2, 0.8, 1.6});
+  });
+
   Scenario scenario;
   scenario.name = "warehouse";
   scenario.world = build.build();

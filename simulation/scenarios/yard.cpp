@@ -73,6 +73,14 @@ Scenario make_yard() {
   for (const double y : {19.0, 24.8, 27.6}) add_car(build, {{74.5, y}, std::numbers::pi});
   add_car(build, {{58.0, 52.6}, 0.05});
 
+  build.spare([&] {
+    for (const double x : {13.8, 19.4, 28.1}) add_car(build, {{x, 7.3}, kQuarter});
+    for (const double y : {22.0, 33.5}) add_car(build, {{74.6, y}, std::numbers::pi});
+    add_crate(build, {{31, 52.6}, 0.1}, {6.0, 2.4, 2.5}, materials::kPaintedMetal);
+    add_crate(build, {{47, 8.0}, 0}, {2.4, 1.6, 2.2}, materials::kFabric);
+    for (const double x : {36.0, 44.5}) add_bench(build, {{x, 31.0}, 0}, 2.0);
+  });
+
   Scenario scenario;
   scenario.name = "yard";
   scenario.world = build.build();

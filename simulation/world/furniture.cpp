@@ -106,6 +106,20 @@ void add_plant(WorldBuilder& build, const Vector2d& at) {
   });
 }
 
+void add_crate(WorldBuilder& build, const Placement& place, const Vector3d& size,
+               const Material& material) {
+  build.object({"crate"}, [&] { stand(build, place, {0, 0, 0}, size, material); });
+}
+
+void add_bench(WorldBuilder& build, const Placement& place, double length) {
+  build.object({"bench"}, [&] {
+    stand(build, place, {0, 0, 0.39}, {0.45, length, 0.06}, materials::kWood);
+    for (const double side : {-0.4, 0.4}) {
+      stand(build, place, {0, side * length, 0}, {0.35, 0.1, 0.39}, materials::kConcrete);
+    }
+  });
+}
+
 void add_cabinet(WorldBuilder& build, const Placement& place, double width, double height,
                  const Material& material) {
   build.object({"cabinet"}, [&] {

@@ -32,6 +32,13 @@ void add_shelf(WorldBuilder& build, const Placement& place, double width, double
 /// Pot with a bush, 1.4 m high.
 void add_plant(WorldBuilder& build, const Eigen::Vector2d& at);
 
+/// Something closed that is put down somewhere: a crate, a stack of boxes, a container.
+void add_crate(WorldBuilder& build, const Placement& place, const Eigen::Vector3d& size,
+               const Material& material = materials::kCardboard);
+
+/// Bench without a back, 0.45 m high; long side along y.
+void add_bench(WorldBuilder& build, const Placement& place, double length);
+
 /// Closed cabinet with a plinth; depth along x, width along y.
 void add_cabinet(WorldBuilder& build, const Placement& place, double width, double height,
                  const Material& material = materials::kWood);
