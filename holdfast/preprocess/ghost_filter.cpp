@@ -55,7 +55,8 @@ void GhostFilter::fill_table() {
   }
 }
 
-/// By its neighbours along the ring alone. `at` has one on each side.
+/// By its neighbours along the ring alone. `at` has two on each side: where these are not on one
+/// surface themselves, as on a wall seen at grazing incidence or in leaves, nothing is said.
 GhostFilter::Kind GhostFilter::kind_of(std::size_t at) const {
   const float before = ranges_[at - 1], here = ranges_[at], after = ranges_[at + 1];
   const float nearer = std::min(before, after);
@@ -65,6 +66,9 @@ GhostFilter::Kind GhostFilter::kind_of(std::size_t at) const {
   if (!(between && config_.mixed_pixels) && !(behind && config_.ghosts)) return Kind::kGood;
   if (rays_[at].dot(rays_[at - 1]) < spot_cosine_ || rays_[at].dot(rays_[at + 1]) < spot_cosine_) {
     return Kind::kGood;  // they share no spot
+  }
+  if (std::abs(ranges_[at - 2] - before) > apart_ || std::abs(ranges_[at + 2] - after) > apart_) {
+    return Kind::kGood;
   }
   return between ? Kind::kMixed : Kind::kGhost;
 }
@@ -100,7 +104,7 @@ GhostCounts GhostFilter::apply(Scan& scan) {
   kinds_.assign(scan.points.size(), Kind::kGood);
   bool table = false;
   for (std::size_t row = 0; row + 1 < begin_.size(); ++row) {
-    for (std::size_t at = begin_[row] + 1U; at + 1 < begin_[row + 1]; ++at) {
+    for (std::size_t at = begin_[row] + 2U; at + 2 < begin_[row + 1]; ++at) {
       const Kind kind = kind_of(at);
       if (kind == Kind::kGood) continue;
       if (!table) fill_table();
