@@ -10,9 +10,11 @@ namespace {
 
 constexpr double kMapRadiusM = 150.0;  // tiles farther than this are not needed
 constexpr int kScansToConfirm = 2;
+constexpr TimeNs kTimeToSettle = kSecond / 4;
 constexpr TimeNs kImuMemory = 2 * kSecond;
 constexpr double kAccelBiasJump = 0.3;         // m/s^2, what a bias may jump by
 constexpr double kGyroBiasJump = 0.03;         // rad/s
+constexpr double kSkewToldM = 0.005;           // skew that is worth being estimated
 constexpr double kCoarseFromM = 0.1;           // uncertainty from which coarse planes are asked
 constexpr float kCoarseSurfaceSigmaM = 0.05F;  // while coarse planes are matched
 
@@ -104,6 +106,8 @@ void MapFilter::start(StepReport& report) {
   state_ = starts_.front().state;
   report.inlier_share = starts_.front().inlier_share;
   started_ = true;
+  start_time_ = report.pose_time;
+  last_surprise_ = report.pose_time;  // the velocity settles first
   confirmed_ = 1;
   report.reason = "first scan aligned";
 }
@@ -140,10 +144,15 @@ bool MapFilter::predict(TimeNs to, StepReport& report) {
 UpdateResult MapFilter::correct_from(int coarsest, const FilterState& predicted,
                                      StageClock& clock) {
   state_ = predicted;
+  // As long as the velocity is hardly known, the skew of the scan tells it best; and a wrong one
+  // would displace the pose by half of the skew that it makes up.
+  const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
+  const bool fast_or_slow = largest_sigma(predicted.P, FilterState::kV) * span > kSkewToldM;
   UpdateResult update;
   for (int level = coarsest; level >= 0; --level) {
     UpdateOptions how = options();
     how.association.level = level;
+    how.velocity_from_skew = fast_or_slow;
     if (level > 0) {
       const auto reach = static_cast<float>(3.0 * largest_sigma(predicted.P, FilterState::kP));
       how.association.gate_m = std::max(how.association.gate_m, reach);
@@ -235,9 +244,9 @@ void MapFilter::describe(const UpdateResult& update, StepReport& report) const {
 
 void MapFilter::judge(const UpdateResult& update, StepReport& report) {
   confirmed_ += update.usable ? 1 : 0;
-  if (confirmed_ < kScansToConfirm) {
+  if (confirmed_ < kScansToConfirm || report.pose_time < start_time_ + kTimeToSettle) {
     report.state = State::kInitializing;
-    report.reason = "waiting for a second scan that agrees";
+    report.reason = "waiting for scans that agree and for the velocity to settle";
   } else if (report.sigma_trans_m > setup_.filter.lost_sigma_m) {
     report.state = State::kLost;
     report.reason = "too long without a scan that fits the map";

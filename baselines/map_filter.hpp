@@ -99,6 +99,7 @@ class MapFilter {
   std::uint64_t scan_number_ = 0;
   int confirmed_ = 0;  ///< scans in agreement since the start
   bool started_ = false;
+  TimeNs start_time_ = 0;
   std::optional<FilterState::Biases> biases_before_hold_;  ///< while the IMU is silent
   TimeNs last_surprise_ = 0;  ///< when the IMU last disagreed with a scan beyond its covariance
 };
