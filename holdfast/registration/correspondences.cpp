@@ -4,6 +4,8 @@
 #include <limits>
 #include <numeric>
 
+#include "holdfast/registration/point_to_line.hpp"
+
 namespace holdfast::registration {
 namespace {
 
@@ -118,7 +120,9 @@ std::size_t associate(const map::PriorMap& map, const SE3& T_anchor_body,
                  [&](std::size_t chunk, std::size_t begin, std::size_t end) {
                    matches[chunk] = associate_range(query, points, begin, end, out);
                  });
-  return std::accumulate(matches.begin(), matches.end(), std::size_t{0});
+  const std::size_t planes = std::accumulate(matches.begin(), matches.end(), std::size_t{0});
+  if (!options.lines) return planes;
+  return planes + add_line_pairs(map, T_anchor_body, p_body_lidar, points, options, out);
 }
 
 }  // namespace holdfast::registration

@@ -45,6 +45,7 @@ struct AssociationOptions {
   float range_sigma_m = 0.02F;     ///< of the LiDAR along the ray
   float surface_sigma_m = 0.003F;  ///< least error of a plane, added to its own thickness
   float ambiguity_sigmas = 3.0F;   ///< a point this near to a second plane of its cell is left out
+  bool lines = false;              ///< pair points without a plane with lines (point_to_line.hpp)
 };
 
 /// Pairs each point with the nearest plane of its cell at the pose `T_anchor_body` (article 3.2.2
