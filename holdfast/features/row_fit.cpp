@@ -25,6 +25,7 @@ constexpr double kSideCosineSq = 0.09;  // a side of an edge is seen within 73 d
 constexpr double kFaceCosineSq = 0.25;  // a face that ends in a border is seen within 60 degrees
 
 constexpr double kCurveGain = 12.0;  // sum of squares, in variances, that decides for a shape
+constexpr double kTipShare = 1.0;    // squared, of a point that may be a tip
 constexpr double kBentSides = 9.0;   // likewise, that speaks against straight sides
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -326,6 +327,9 @@ void RowFitter::fit_segment(const Segment& segment, std::vector<WindowFit>& fits
       if (is_clear(lo, i, hi)) fit_window(i, whole, variance, fits[i]);
       continue;
     }
+    // The tip of two sides is 1.7 times the RMS distance off the line through both.
+    const double off = whole.normal().dot(p[i].head<2>().cast<double>() - whole.mean);
+    if (off * off < kTipShare * whole.thickness) continue;
     RowEdge edge;
     const double gain = crease(lo, i, hi, edge);
     if (gain <= 0) continue;
