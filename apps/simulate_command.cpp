@@ -153,9 +153,11 @@ void add_simulate_command(CLI::App& app) {
                    "seconds to drive (default: the scenario's whole route)")
       ->type_name("S");
   command
-      ->add_option("--event", arguments->events,
-                   "NAME@T0[+DURATION], seconds from the start: blind (2 s by default), "
-                   "imu_bias_jump, kidnap; may be given more than once")
+      ->add_option(
+          "--event", arguments->events,
+          "NAME@T0[+DURATION], seconds from the start: blind (empty clouds), lidar_off and "
+          "imu_off (no messages), each 2 s long by default; imu_bias_jump, kidnap; may be "
+          "given more than once")
       ->type_name("EVENT")
       ->allow_extra_args(false);
   add_hardships(*command, *arguments);

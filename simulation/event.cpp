@@ -9,8 +9,13 @@
 namespace holdfast::simulation {
 namespace {
 
-constexpr std::array<std::string_view, 3> kNames = {"blind", "imu_bias_jump", "kidnap"};
-constexpr TimeNs kDefaultBlindness = 2 * kSecond;
+constexpr std::array<std::string_view, 5> kNames = {"blind", "lidar_off", "imu_off",
+                                                    "imu_bias_jump", "kidnap"};
+constexpr TimeNs kDefaultDuration = 2 * kSecond;
+
+bool lasts(EventKind kind) {
+  return kind == EventKind::kBlind || kind == EventKind::kLidarOff || kind == EventKind::kImuOff;
+}
 
 Error bad_event(const std::string& text, const std::string& found) {
   return {
@@ -32,7 +37,9 @@ std::string vector_json(const Eigen::Vector3d& v) {
 
 std::string details_json(const SimulatedEvent& event) {
   switch (event.kind) {
-    case EventKind::kBlind: return "";
+    case EventKind::kBlind:
+    case EventKind::kLidarOff:
+    case EventKind::kImuOff: return "";
     case EventKind::kImuBiasJump:
       return fmt::format(",\"gyro_step_rad_s\":{},\"accel_step_m_s2\":{}",
                          vector_json(event.gyro_step_rad_s), vector_json(event.accel_step_m_s2));
@@ -66,10 +73,10 @@ Result<EventSpec> parse_event(const std::string& text) {
   if (!parse_seconds(start, event.start) || event.start < 0) {
     return bad_event(text, fmt::format("the start '{}'", start));
   }
-  if (event.kind == EventKind::kBlind) event.duration = kDefaultBlindness;
+  if (lasts(event.kind)) event.duration = kDefaultDuration;
   if (plus == std::string::npos) return event;
   const std::string duration = text.substr(plus + 1);
-  if (event.kind != EventKind::kBlind) {
+  if (!lasts(event.kind)) {
     return bad_event(text, fmt::format("a duration, which {} does not take", name));
   }
   if (!parse_seconds(duration, event.duration) || event.duration <= 0) {

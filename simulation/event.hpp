@@ -13,6 +13,8 @@ namespace holdfast::simulation {
 /// What happens to the robot during a simulated drive.
 enum class EventKind {
   kBlind,        ///< no ray returns during the interval: empty clouds
+  kLidarOff,     ///< no scan that would have measured within the interval: no messages
+  kImuOff,       ///< no IMU sample within the interval: no messages
   kImuBiasJump,  ///< both IMU biases jump by fixed sizes in a direction drawn per seed, and stay
   kKidnap,       ///< the body stands at another place of the route at once; the IMU feels nothing
 };
@@ -35,15 +37,16 @@ struct SimulatedEvent {
   Eigen::Vector3d accel_step_m_s2 = Eigen::Vector3d::Zero();  ///< of an imu_bias_jump
 };
 
-/// Name on the command line and in events.jsonl: "blind", "imu_bias_jump", "kidnap".
+/// Name on the command line and in events.jsonl: "blind", "lidar_off", "imu_off", "imu_bias_jump",
+/// "kidnap".
 std::string_view event_name(EventKind kind);
 
 /// Names of all events, in the order of EventKind.
 std::vector<std::string_view> event_names();
 
-/// Parses `NAME@T0[+DURATION]`, seconds from the start of the log. `blind` without a duration lasts
-/// 2 s; the others happen at T0 and take no duration. The error lists the known names or shows the
-/// form expected.
+/// Parses `NAME@T0[+DURATION]`, seconds from the start of the log. `blind`, `lidar_off` and
+/// `imu_off` without a duration last 2 s; the others happen at T0 and take no duration. The error
+/// lists the known names or shows the form expected.
 Result<EventSpec> parse_event(const std::string& text);
 
 /// One line of events.jsonl, without the end of line: t0 and t1 in seconds with 9 decimals, the

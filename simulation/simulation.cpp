@@ -27,10 +27,10 @@ std::vector<TimeNs> starts_of(EventKind kind, const std::vector<EventSpec>& even
   return starts;
 }
 
-std::vector<BlindSpan> blind_spans(const std::vector<EventSpec>& events) {
-  std::vector<BlindSpan> spans;
+std::vector<TimeSpan> spans_of(EventKind kind, const std::vector<EventSpec>& events) {
+  std::vector<TimeSpan> spans;
   for (const EventSpec& event : events) {
-    if (event.kind != EventKind::kBlind) continue;
+    if (event.kind != kind) continue;
     spans.push_back({event.start, event.start + event.duration});
   }
   return spans;
@@ -112,7 +112,9 @@ struct Simulation::Parts {
   Walkers walkers;
   std::size_t imu_samples;
   TimeNs first_scan;  ///< begin of the first revolution; times here count from the start of the log
-  std::size_t scans;
+  std::size_t scans;  ///< revolutions, those without a message included
+  std::vector<TimeSpan> lidar_off;
+  std::vector<TimeSpan> imu_off;
   std::vector<BiasJump> jumps;
   ImuSensor imu;
   LidarSensor lidar;
@@ -128,7 +130,12 @@ struct Simulation::Parts {
   Parts(Scenario the_scenario, std::optional<ChangedWorld> change,
         const SimulationOptions& the_options, Drive the_drive);
   TimeNs log_end() const { return static_cast<TimeNs>(imu_samples - 1) * imu.interval(); }
+  TimeNs scan_begin(std::size_t scan) const {
+    return first_scan + static_cast<TimeNs>(scan) * options.lidar.period;
+  }
+  bool is_silent(std::size_t scan) const;
   void cast_pending();
+  void drop_silent_imu();
   ImuSample take_imu();
   Scan take_scan();
   std::vector<SimulatedEvent> list_events() const;
@@ -149,21 +156,44 @@ Simulation::Parts::Parts(Scenario the_scenario, std::optional<ChangedWorld> chan
           static_cast<double>(drive.duration()) * options.imu.rate_hz / 1e9 + 1 + 1e-9)),
       first_scan(from_seconds(RandomStream(options.seed, "lidar.phase").uniform(0.01, 0.06))),
       scans(0),
+      lidar_off(spans_of(EventKind::kLidarOff, options.events)),
+      imu_off(spans_of(EventKind::kImuOff, options.events)),
       jumps(draw_jumps(options)),
       imu(options.imu, options.seed, imu_samples, jumps),
       lidar(options.lidar, options.seed),
-      around{caster, scenario.world.materials, drive, walkers, blind_spans(options.events)} {
+      around{caster, scenario.world.materials, drive, walkers,
+             spans_of(EventKind::kBlind, options.events)} {
   scans =
       static_cast<std::size_t>(std::max<TimeNs>(log_end() - first_scan, 0) / options.lidar.period);
   events = list_events();
 }
 
+/// A revolution that the LiDAR could not begin or finish makes no message.
+bool Simulation::Parts::is_silent(std::size_t scan) const {
+  const TimeNs begin = scan_begin(scan);
+  return std::any_of(lidar_off.begin(), lidar_off.end(), [&](const TimeSpan& off) {
+    return begin < off.end && off.begin < begin + options.lidar.period;
+  });
+}
+
 void Simulation::Parts::cast_pending() {
-  if (pending || next_scan == scans) return;
-  const TimeNs begin = first_scan + static_cast<TimeNs>(next_scan) * options.lidar.period;
-  pending = lidar.revolve(next_scan, begin, around, pool);
-  if (next_scan == 0) first_pose_time = pending->end_time;
+  if (pending) return;
+  while (next_scan < scans && is_silent(next_scan)) ++next_scan;
+  if (next_scan == scans) return;
+  pending = lidar.revolve(next_scan, scan_begin(next_scan), around, pool);
+  if (!first_pose_time) first_pose_time = pending->end_time;
   ++next_scan;
+}
+
+/// Samples that make no message are measured all the same: the noise of later ones stays as it is.
+void Simulation::Parts::drop_silent_imu() {
+  const auto is_off = [&](TimeNs t) {
+    return std::any_of(imu_off.begin(), imu_off.end(),
+                       [t](const TimeSpan& span) { return span.contains(t); });
+  };
+  while (next_imu < imu_samples && is_off(static_cast<TimeNs>(next_imu) * imu.interval())) {
+    take_imu();
+  }
 }
 
 ImuSample Simulation::Parts::take_imu() {
@@ -191,7 +221,9 @@ std::vector<SimulatedEvent> Simulation::Parts::list_events() const {
     event.t1 = kEpoch + std::min(t1, log_end());
     return out.emplace_back(event);
   };
-  for (const BlindSpan& span : around.blind) add(EventKind::kBlind, span.begin, span.end);
+  for (const TimeSpan& span : around.blind) add(EventKind::kBlind, span.begin, span.end);
+  for (const TimeSpan& span : lidar_off) add(EventKind::kLidarOff, span.begin, span.end);
+  for (const TimeSpan& span : imu_off) add(EventKind::kImuOff, span.begin, span.end);
   for (const BiasJump& jump : jumps) {
     SimulatedEvent& event = add(EventKind::kImuBiasJump, jump.t, jump.t);
     event.gyro_step_rad_s = jump.gyro;
@@ -251,6 +283,7 @@ Simulation::~Simulation() = default;
 Result<std::optional<SensorEvent>> Simulation::next() {
   Parts& p = *parts_;
   p.cast_pending();
+  p.drop_silent_imu();
   const bool imu_left = p.next_imu < p.imu_samples;
   const TimeNs imu_time = static_cast<TimeNs>(p.next_imu) * p.imu.interval();
   if (imu_left && !(p.pending && p.pending->end_time < imu_time)) {
@@ -266,7 +299,12 @@ double Simulation::progress() const {
 
 TimeNs Simulation::start_time() const { return kEpoch; }
 TimeNs Simulation::end_time() const { return kEpoch + parts_->log_end(); }
-std::size_t Simulation::scan_count() const { return parts_->scans; }
+
+std::size_t Simulation::scan_count() const {
+  std::size_t count = 0;
+  for (std::size_t scan = 0; scan < parts_->scans; ++scan) count += parts_->is_silent(scan) ? 0 : 1;
+  return count;
+}
 
 SE3 Simulation::truth_at(TimeNs t) const { return state_at(t).T_map_body; }
 TrueState Simulation::state_at(TimeNs t) const { return parts_->state(t - kEpoch); }

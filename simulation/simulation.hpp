@@ -45,8 +45,8 @@ struct TrueState {
 
 /// A robot that drives through a world, as a stream of sensor events in order of end time (IMU
 /// before scan at equal times), together with the truth. The IMU begins at start_time() and covers
-/// the end of the last scan. Same scenario, options and seed: same bits, for any number of threads.
-/// Not thread-safe; uses its own worker threads.
+/// the end of the last scan, unless an imu_off takes samples away. Same scenario, options and seed:
+/// same bits, for any number of threads. Not thread-safe; uses its own worker threads.
 class Simulation : public SensorSource {
  public:
   /// Errors: unknown scenario (with the list of known ones), an event outside the log, models that
@@ -64,8 +64,8 @@ class Simulation : public SensorSource {
   double progress() const override;
 
   TimeNs start_time() const;
-  TimeNs end_time() const;  ///< time of the last IMU sample
-  std::size_t scan_count() const;
+  TimeNs end_time() const;         ///< time of the last IMU sample
+  std::size_t scan_count() const;  ///< messages
 
   /// T_map_body at `t`, clamped to the log; at a teleport the pose after it.
   SE3 truth_at(TimeNs t) const;

@@ -18,9 +18,9 @@ using Eigen::Vector3f;
 constexpr std::size_t kChunkColumns = 40;
 constexpr std::uint16_t kWalker = std::numeric_limits<std::uint16_t>::max();
 
-bool is_blind(const std::vector<BlindSpan>& spans, TimeNs t) {
+bool is_blind(const std::vector<TimeSpan>& spans, TimeNs t) {
   return std::any_of(spans.begin(), spans.end(),
-                     [t](const BlindSpan& s) { return s.begin <= t && t < s.end; });
+                     [t](const TimeSpan& span) { return span.contains(t); });
 }
 
 /// A ball that holds a person's capsules.

@@ -13,10 +13,12 @@
 
 namespace holdfast::simulation {
 
-/// A span of time in which the LiDAR sees nothing, from the start of the log.
-struct BlindSpan {
+/// A span of time, from the start of the log.
+struct TimeSpan {
   TimeNs begin = 0;
-  TimeNs end = 0;
+  TimeNs end = 0;  ///< the first time after it
+
+  bool contains(TimeNs t) const { return begin <= t && t < end; }
 };
 
 /// What a LiDAR looks at while the robot drives.
@@ -25,7 +27,7 @@ struct Surroundings {
   const std::vector<Material>& materials;
   const Drive& drive;
   const Walkers& walkers;
-  std::vector<BlindSpan> blind;
+  std::vector<TimeSpan> blind;  ///< when the LiDAR sees nothing
 };
 
 /// Casts every ray from where the LiDAR is at the ray's own time.

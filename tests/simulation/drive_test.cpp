@@ -94,6 +94,54 @@ TEST(Drive, SwaysWithinItsAmplitudes) {
   EXPECT_GT(heave, 0.3 * scenario.style.heave_m);
 }
 
+TEST(Drive, WobblesWithItsAmplitudeAtOneToThreeHertzOnceItMoves) {
+  const Scenario scenario = *make_scenario("corridor");
+  DriveStyle style = scenario.style;
+  style.wobble_rad = 0.08;
+  const Drive calm = Drive::plan(scenario.route, scenario.style, 4, 40 * kSecond, {});
+  const Drive wild = Drive::plan(scenario.route, style, 4, 40 * kSecond, {});
+  Vector3d most = Vector3d::Zero();
+  int crossings = 0;
+  double last_pitch = 0;
+  constexpr TimeNs kStep = kSecond / 100;
+  for (TimeNs t = 0; t < 40 * kSecond; t += kStep) {
+    const SE3 a = calm.at(t).T_map_body;
+    const SE3 b = wild.at(t).T_map_body;
+    const Vector3d turn = so3::log(a.rotation.conjugate() * b.rotation);
+    ASSERT_LT((a.translation - b.translation).norm(), 1e-12) << "it turns about the body";
+    if (t <= 2 * kSecond) {
+      ASSERT_LT(turn.norm(), 1e-12) << "at rest";
+    }
+    if (t < 5 * kSecond) continue;
+    most = most.cwiseMax(turn.cwiseAbs());
+    crossings += turn.y() * last_pitch < 0 ? 1 : 0;
+    last_pitch = turn.y();
+  }
+  for (int k = 0; k < 3; ++k) {
+    // Roll, pitch and yaw mix by the product of two of them (0.08^2 / 2).
+    EXPECT_LT(most[k], 0.08 + 0.004);
+    EXPECT_GT(most[k], 0.9 * 0.08) << "two waves of half the amplitude meet in 35 s";
+  }
+  const double frequency = crossings / 2.0 / 35;
+  EXPECT_GT(frequency, 0.9);
+  EXPECT_LT(frequency, 3.1);
+}
+
+TEST(Drive, GoesFasterByItsFactor) {
+  const Scenario scenario = *make_scenario("corridor");
+  const DriveStyle style = scenario.style.faster(2);
+  const Drive slow = Drive::plan(scenario.route, scenario.style, 2, 40 * kSecond, {});
+  const Drive fast = Drive::plan(scenario.route, style, 2, 40 * kSecond, {});
+  double most_slow = 0;
+  double most_fast = 0;
+  for (TimeNs t = 0; t < 40 * kSecond; t += kSecond / 50) {
+    most_slow = std::max(most_slow, slow.at(t).v_map.norm());
+    most_fast = std::max(most_fast, fast.at(t).v_map.norm());
+    ASSERT_LT(std::abs(fast.at(t).omega_body.z()), 1.25 * style.yaw_rate_rad_s);
+  }
+  EXPECT_NEAR(most_fast / most_slow, 2, 0.2);
+}
+
 /// Kidnaps every 7 s, so that straights and turns are both hit.
 std::vector<TimeNs> many_kidnaps() {
   std::vector<TimeNs> out;

@@ -19,6 +19,9 @@ TEST(Event, IsParsedFromNameStartAndDuration) {
   EXPECT_EQ(blind.duration, 750'000'000);
   EXPECT_EQ(parse_event("blind@1")->duration, 2 * kSecond);
   EXPECT_EQ(parse_event("imu_bias_jump@0.000000001")->start, 1);
+  EXPECT_EQ(parse_event("lidar_off@4+0.5")->kind, EventKind::kLidarOff);
+  EXPECT_EQ(parse_event("imu_off@4")->kind, EventKind::kImuOff);
+  EXPECT_EQ(parse_event("imu_off@4")->duration, 2 * kSecond);
 }
 
 TEST(Event, ErrorsShowFormNamesAndWhatWasFound) {
@@ -27,7 +30,8 @@ TEST(Event, ErrorsShowFormNamesAndWhatWasFound) {
     const auto event = parse_event(text);
     ASSERT_FALSE(event) << text;
     EXPECT_THAT(event.error().message, HasSubstr("NAME@T0[+DURATION]"));
-    EXPECT_THAT(event.error().message, HasSubstr("blind, imu_bias_jump, kidnap"));
+    EXPECT_THAT(event.error().message,
+                HasSubstr("blind, lidar_off, imu_off, imu_bias_jump, kidnap"));
   }
   EXPECT_THAT(parse_event("teleport@3").error().message, HasSubstr("found the name 'teleport'"));
 }

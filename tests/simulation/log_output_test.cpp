@@ -148,6 +148,20 @@ TEST_F(LogOutput, ConfigNamesTheRobotAndWhereItBegins) {
   EXPECT_THAT(text, HasSubstr("\nlidar:\n  range_sigma_m: 0.02\n"));
 }
 
+TEST_F(LogOutput, ConfigAndMapHaveTheNoiseAskedFor) {
+  SimulationOptions noisy;
+  noisy.scenario = "box";
+  noisy.duration_s = 1;
+  noisy.lidar.range_sigma_m = 0.05;
+  noisy.map_sigma_m = 0;
+  const auto simulation = make(noisy);
+  EXPECT_THAT(robot_config(*simulation), HasSubstr("\nlidar:\n  range_sigma_m: 0.05\n"));
+  for (const Eigen::Vector3f& p : simulation->survey_map().points) {
+    const Eigen::Vector3f to_wall = p.cwiseMin(Eigen::Vector3f(12, 8, 4) - p).cwiseAbs();
+    ASSERT_LT(to_wall.minCoeff(), 1e-5F) << "on a wall";
+  }
+}
+
 TEST_F(LogOutput, AStrangersFolderIsLeftAlone) {
   std::ofstream(folder_ / "letter.txt") << "dear";
   const auto simulation = make(options(1));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulation/change/world_change.hpp"
 #include "simulation/world/ray_caster.hpp"
 #include "tests/simulation/support.hpp"
 
@@ -43,6 +44,7 @@ std::vector<TimeNs> kidnaps_every_ten_seconds() {
   return out;
 }
 
+/// Spare things are in the worlds of scenarios, so that what may come keeps clear too.
 TEST(Scenario, RobotsKeepClearOfEverything) {
   for (const ScenarioInfo& info : scenarios()) {
     const Scenario scenario = info.make();
@@ -59,6 +61,25 @@ TEST(Scenario, RobotsKeepClearOfEverything) {
           ASSERT_GT(clearance(caster, {body.x(), body.y(), height}), 0.3)
               << info.name << " seed " << seed << " at " << to_seconds(t) << " s, ("
               << body.transpose() << ")";
+        }
+      }
+    }
+  }
+}
+
+TEST(Scenario, RobotsKeepClearInChangedWorlds) {
+  for (const char* name : {"office", "offices", "yard", "warehouse"}) {
+    const Scenario scenario = *make_scenario(name);
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const auto changed = change_world(scenario, 0.5, seed);
+      ASSERT_TRUE(changed) << changed.error().message;
+      const RayCaster caster(changed->after);
+      const Drive drive = Drive::plan(scenario.route, scenario.style, seed, std::nullopt, {});
+      for (TimeNs t = 0; t < drive.duration(); t += kSecond / 5) {
+        const Vector3d body = drive.at(t).T_map_body.translation;
+        for (const double height : {0.3, 0.6, 1.0}) {
+          ASSERT_GT(clearance(caster, {body.x(), body.y(), height}), 0.3)
+              << name << " seed " << seed << " at " << body.transpose();
         }
       }
     }

@@ -61,6 +61,21 @@ TEST(Simulation, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one, hash_of(record(*make(office(1, 3)))));
 }
 
+TEST(Simulation, HasTheSameBitsInHardWorldsForAnyNumberOfThreads) {
+  const auto hard = [](int threads) {
+    SimulationOptions options = office(1, threads);
+    options.changed_share = 0.3;
+    options.wobble_rad = 0.05;
+    options.speed_factor = 2;
+    options.lidar.range_sigma_m = 0.05;
+    return make(options);
+  };
+  const std::uint64_t one = hash_of(record(*hard(1)));
+  EXPECT_EQ(one, hash_of(record(*hard(2))));
+  EXPECT_NE(one, hash_of(record(*make(office(1, 1)))));
+  EXPECT_EQ(hard(1)->survey_map().points, hard(2)->survey_map().points);
+}
+
 TEST(Simulation, IsAnotherForEachSeed) {
   EXPECT_NE(hash_of(record(*make(office(1, 1)))), hash_of(record(*make(office(2, 1)))));
 }
@@ -147,6 +162,67 @@ TEST(Simulation, BlindScansAreEmptyInTheIntervalOnly) {
   EXPECT_EQ(simulation->events()[0].t1, end);
 }
 
+TEST(Simulation, WithLidarOffNoRevolutionOfTheIntervalIsAMessage) {
+  SimulationOptions options = noise_free("box", 6);
+  const auto all = record(*make(options));
+  options.events = {event("lidar_off@2.35+1.5")};
+  const auto simulation = make(options);
+  const auto log = record(*simulation);
+  const TimeNs begin = simulation->start_time() + 2'350'000'000;
+  const TimeNs end = begin + 1'500'000'000;
+  std::size_t kept = 0;
+  for (const Scan& scan : all.scans) {
+    const bool silent = scan.end_time > begin && scan.stamp < end;
+    if (silent) continue;
+    ASSERT_LT(kept, log.scans.size());
+    EXPECT_EQ(log.scans[kept].stamp, scan.stamp);
+    EXPECT_EQ(log.scans[kept].points.size(), scan.points.size()) << "and nothing else differs";
+    ++kept;
+  }
+  EXPECT_EQ(kept, log.scans.size());
+  EXPECT_EQ(kept, simulation->scan_count());
+  EXPECT_EQ(kept, all.scans.size() - 16) << "14 within, one cut off at each end";
+  EXPECT_EQ(log.imu.size(), all.imu.size());
+  ASSERT_EQ(simulation->events().size(), 1U);
+  EXPECT_EQ(simulation->events()[0].t0, begin);
+  EXPECT_EQ(simulation->events()[0].t1, end);
+}
+
+TEST(Simulation, InitialPoseIsThatOfTheFirstMessage) {
+  SimulationOptions options = noise_free("box", 6);
+  options.events = {event("lidar_off@0+1.2")};
+  const auto simulation = make(options);
+  const SE3 initial = simulation->initial_pose();
+  const auto log = record(*simulation);
+  EXPECT_EQ(initial.translation, simulation->truth_at(log.scans[0].end_time).translation);
+}
+
+TEST(Simulation, WithImuOffItsSamplesAreMissingAndTheOthersStayAsTheyWere) {
+  SimulationOptions options;
+  options.scenario = "box";
+  options.duration_s = 6;
+  options.lidar.columns = 1;
+  const auto all = record(*make(options));
+  options.events = {event("imu_off@1.5+0.5"), event("imu_off@5.5+9")};
+  const auto simulation = make(options);
+  const auto log = record(*simulation);
+  std::size_t kept = 0;
+  for (const ImuSample& sample : all.imu) {
+    const TimeNs t = sample.t - simulation->start_time();
+    const bool off = (t >= 1'500'000'000 && t < 2'000'000'000) || t >= 5'500'000'000;
+    if (off) continue;
+    ASSERT_LT(kept, log.imu.size());
+    ASSERT_EQ(log.imu[kept].t, sample.t);
+    ASSERT_EQ(log.imu[kept].gyro_rad_s, sample.gyro_rad_s);
+    ++kept;
+  }
+  EXPECT_EQ(kept, log.imu.size());
+  EXPECT_EQ(kept, all.imu.size() - 100 - 101);
+  EXPECT_EQ(log.scans.size(), all.scans.size());
+  EXPECT_EQ(simulation->events().at(1).t1, simulation->end_time()) << "events end with the log";
+  EXPECT_EQ(simulation->progress(), 1.0);
+}
+
 TEST(Simulation, BiasJumpStepsTheMeasurementsAtItsTime) {
   SimulationOptions options = noise_free("box", 6);
   options.lidar.columns = 1;
@@ -225,6 +301,16 @@ TEST(Simulation, SaysWhatIsWrongWithItsOptions) {
   options = noise_free("box", 10);
   options.lidar.beams.clear();
   EXPECT_THAT(message(options), HasSubstr("beams"));
+  const auto refuses = [&](const char* about, const auto& spoil) {
+    SimulationOptions spoilt = noise_free("office", 10);
+    spoil(spoilt);
+    EXPECT_THAT(message(spoilt), HasSubstr(about));
+  };
+  refuses("120 % of the world changed: expected 0 to 100", [](auto& o) { o.changed_share = 1.2; });
+  refuses("0 times the speed: expected 0.1 to 10", [](auto& o) { o.speed_factor = 0; });
+  refuses("degrees: expected 0 to 30", [](auto& o) { o.wobble_rad = 1; });
+  refuses("range noise of -1 m: expected", [](auto& o) { o.lidar.range_sigma_m = -1; });
+  refuses("map noise of nan m: expected", [](auto& o) { o.map_sigma_m = NAN; });
   EXPECT_THAT(message(noise_free("box", 10)), "created");
 }
 

@@ -14,21 +14,24 @@ namespace holdfast::tolerances {
 constexpr double kRayInRoom = 12 * 16 * 6e-8;
 
 /// Largest |d^4/dt^4| of body rates in the test drives: sway of 3 mrad at up to 2.5 Hz (two waves
-/// of half the amplitude) and turns of 1 rad/s that set in over 0.35 s: 0.003 (2 pi 2.5)^5 + 1 /
-/// 0.35^4.
-inline const double kFourthOfRates = 0.003 * std::pow(2 * M_PI * 2.5, 5) + 1 / std::pow(0.35, 4);
+/// of half the amplitude), turns of 1 rad/s that set in over 0.35 s, and a wobble of so many
+/// radians at up to 3 Hz.
+inline double fourth_of_rates(double wobble) {
+  return 0.003 * std::pow(2 * M_PI * 2.5, 5) + 1 / std::pow(0.35, 4) +
+         wobble * std::pow(2 * M_PI * 3, 5);
+}
 
 /// Attitude error of the fourth-order Magnus integration over `t` seconds with steps of `step` (two
 /// IMU intervals): Simpson's rule leaves step^4 / 2880 of the fourth derivative a second.
-inline double integrated_attitude(double t, double step) {
-  return t * std::pow(step, 4) / 2880 * kFourthOfRates;
+inline double integrated_attitude(double t, double step, double wobble = 0) {
+  return t * std::pow(step, 4) / 2880 * fourth_of_rates(wobble);
 }
 
 /// Position error that follows: gravity is turned by an attitude error that grows linearly. The
 /// accelerations themselves are cubic between the spline's knots, which Simpson's rule integrates
 /// exactly.
-inline double integrated_position(double t, double step) {
-  return 9.81 * integrated_attitude(t, step) * t * t / 6;
+inline double integrated_position(double t, double step, double wobble = 0) {
+  return 9.81 * integrated_attitude(t, step, wobble) * t * t / 6;
 }
 
 /// How far the variance of `n` independent normal values may lie from the true one, relative to it:
