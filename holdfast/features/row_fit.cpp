@@ -168,9 +168,10 @@ RowFitter::Line RowFitter::line(std::uint32_t begin, std::uint32_t end) const {
 /// surfaces, and that a row on a level plane is not straight but round about the sensor.
 double RowFitter::variance_at(const Line& line, const Vector3f& p) const {
   const double range_sq = p.squaredNorm();
+  const double per_range_sq = 1.0 / range_sq;
   const double along = line.normal().dot(p.head<2>().cast<double>());
-  const double round = line.spread * line.spread / range_sq;
-  return noise_.normal_variance(range_sq, along * along / range_sq) + roughness_sq_ + 0.2 * round;
+  return noise_.normal_variance(range_sq, along * along * per_range_sq) + roughness_sq_ +
+         0.2 * line.spread * line.spread * per_range_sq;
 }
 
 bool RowFitter::is_straight(const Line& line, double variance) const {
