@@ -70,6 +70,8 @@ class MapFilter {
 
   const FilterState& state() const { return state_; }
   const map::PriorMap& map() const { return map_; }
+  /// The map, for whoever goes on from here.
+  map::PriorMap take_map() && { return std::move(map_); }
   const preprocess::ImuBuffer& imu() const { return imu_; }
 
  private:

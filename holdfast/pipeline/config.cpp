@@ -10,6 +10,9 @@ std::vector<io::FieldRef> fields_of(Config& config) {
   io::collect_fields("start", config.start, fields);
   io::collect_fields("preprocess", config.preprocess, fields);
   io::collect_fields("map_filter", config.map_filter, fields);
+  io::collect_fields("estimator", config.estimator, fields);
+  io::collect_fields("estimator.unmeasured", config.estimator.noise.unmeasured, fields);
+  io::collect_fields("graph", config.graph, fields);
   return fields;
 }
 

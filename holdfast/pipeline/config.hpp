@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "baselines/map_filter.hpp"
+#include "holdfast/estimator/smoother_options.hpp"
 #include "holdfast/io/config_io.hpp"
+#include "holdfast/pipeline/graph_localizer.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 
 namespace holdfast::pipeline {
@@ -42,12 +44,14 @@ struct StartConfig {
 struct Config {
   SE3 T_body_lidar;
   bool has_T_body_lidar = false;
-  std::string method = "map_filter";
+  std::string method = "graph";
   LidarConfig lidar;
   filter::ImuNoiseConfig imu;
   StartConfig start;
   preprocess::ScanSelectionConfig preprocess;
   baselines::MapFilterConfig map_filter;
+  estimator::SmootherConfig estimator;
+  GraphConfig graph;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -58,7 +62,7 @@ struct Config {
         &self.has_T_body_lidar);
     visit("method", self.method,
           FieldDoc{"localizer", -std::numeric_limits<double>::infinity(),
-                   std::numeric_limits<double>::infinity(), "map_filter"});
+                   std::numeric_limits<double>::infinity(), "graph|map_filter"});
   }
 };
 

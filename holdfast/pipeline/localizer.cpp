@@ -2,10 +2,40 @@
 
 #include <numbers>
 
+#include "baselines/map_filter.hpp"
+#include "holdfast/pipeline/graph_localizer.hpp"
+
 namespace holdfast::pipeline {
 namespace {
 
 constexpr double kStartRadiusM = 150.0;
+
+/// The baseline as a method.
+class MapFilterMethod : public ScanLocalizer {
+ public:
+  MapFilterMethod(map::PriorMap map, const baselines::MapFilter::Setup& setup,
+                  const SE3& T_map_body)
+      : filter_(std::move(map), setup, T_map_body) {}
+
+  void add_imu(const ImuSample& sample) override { filter_.add_imu(sample); }
+  StepReport add_scan(const Scan& scan) override { return filter_.add_scan(scan); }
+
+ private:
+  baselines::MapFilter filter_;
+};
+
+baselines::MapFilter::Setup filter_setup(const Config& config, int threads) {
+  baselines::MapFilter::Setup setup;
+  setup.filter = config.map_filter;
+  setup.imu = config.imu;
+  setup.selection = config.preprocess;
+  setup.start = {config.start.position_m, config.start.rotation_deg * std::numbers::pi / 180.0,
+                 config.start.speed_m_s};
+  setup.range_sigma_m = config.lidar.range_sigma_m;
+  setup.T_body_lidar = config.T_body_lidar;
+  setup.threads = threads;
+  return setup;
+}
 
 }  // namespace
 
@@ -21,20 +51,20 @@ Result<Localizer> Localizer::create(const Config& config, map::PriorMap map,
   if (const auto focused = map.focus(T_map_body->translation, kStartRadiusM); !focused) {
     return focused.error();
   }
-  baselines::MapFilter::Setup setup;
-  setup.filter = config.map_filter;
-  setup.imu = config.imu;
-  setup.selection = config.preprocess;
-  setup.start = {config.start.position_m, config.start.rotation_deg * std::numbers::pi / 180.0,
-                 config.start.speed_m_s};
-  setup.range_sigma_m = config.lidar.range_sigma_m;
-  setup.T_body_lidar = config.T_body_lidar;
-  setup.threads = threads;
-  return Localizer(std::make_unique<baselines::MapFilter>(std::move(map), setup, *T_map_body));
+  const baselines::MapFilter::Setup start = filter_setup(config, threads);
+  if (config.method == "map_filter") {
+    return Localizer(std::make_unique<MapFilterMethod>(std::move(map), start, *T_map_body));
+  }
+  GraphLocalizer::Setup setup;
+  setup.start = start;
+  setup.smoother = config.estimator;
+  setup.smoother.noise.imu = config.imu;
+  setup.graph = config.graph;
+  return Localizer(std::make_unique<GraphLocalizer>(std::move(map), setup, *T_map_body));
 }
 
-void Localizer::add_imu(const ImuSample& sample) { filter_->add_imu(sample); }
+void Localizer::add_imu(const ImuSample& sample) { method_->add_imu(sample); }
 
-StepReport Localizer::add_scan(const Scan& scan) { return filter_->add_scan(scan); }
+StepReport Localizer::add_scan(const Scan& scan) { return method_->add_scan(scan); }
 
 }  // namespace holdfast::pipeline

@@ -3,11 +3,11 @@
 #include <memory>
 #include <optional>
 
-#include "baselines/map_filter.hpp"
 #include "holdfast/core/result.hpp"
 #include "holdfast/core/step_report.hpp"
 #include "holdfast/map/prior_map.hpp"
 #include "holdfast/pipeline/config.hpp"
+#include "holdfast/pipeline/scan_localizer.hpp"
 
 namespace holdfast::pipeline {
 
@@ -27,9 +27,9 @@ class Localizer {
   StepReport add_scan(const Scan& scan);
 
  private:
-  explicit Localizer(std::unique_ptr<baselines::MapFilter> filter) : filter_(std::move(filter)) {}
+  explicit Localizer(std::unique_ptr<ScanLocalizer> method) : method_(std::move(method)) {}
 
-  std::unique_ptr<baselines::MapFilter> filter_;
+  std::unique_ptr<ScanLocalizer> method_;
 };
 
 }  // namespace holdfast::pipeline

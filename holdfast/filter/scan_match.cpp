@@ -1,0 +1,95 @@
+#include "holdfast/filter/scan_match.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+
+namespace holdfast::filter {
+namespace {
+
+using registration::kVelocity;
+using registration::NormalEquations;
+
+constexpr double kRepairM = 0.02;
+constexpr double kRepairRad = 0.002;
+constexpr double kRedeskewM = 0.002;
+constexpr std::array<double, ScanMatch::kCalls> kAnneal = {4.0, 2.0, 1.0};
+
+SE3 anchored(const SE3& T_map_body, const map::PriorMap& map) {
+  return {T_map_body.rotation, T_map_body.translation - map.anchor()};
+}
+
+/// Takes the motion during the scan as known.
+void fix_velocity(NormalEquations& e) {
+  e.H.middleRows<3>(kVelocity).setZero();
+  e.H.middleCols<3>(kVelocity).setZero();
+  e.g.segment<3>(kVelocity).setZero();
+}
+
+/// Marginalises a pose offset common to all points of the scan out of the equations.
+void soften(double sigma_m, double sigma_rad, NormalEquations& e) {
+  Eigen::Matrix<double, 6, 6> S = e.H.topLeftCorner<6, 6>();
+  S.diagonal().head<3>().array() += 1.0 / (sigma_m * sigma_m);
+  S.diagonal().tail<3>().array() += 1.0 / (sigma_rad * sigma_rad);
+  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(S);
+  const Eigen::Matrix<double, 9, 6> cross = e.H.leftCols<6>();
+  e.g -= cross * solver.solve(e.g.head<6>());
+  e.H -= cross * solver.solve(cross.transpose());
+  e.H = (0.5 * (e.H + e.H.transpose())).eval();
+}
+
+}  // namespace
+
+void ScanMatch::book(Stage stage) {
+  if (clock_ != nullptr) clock_->book(stage);
+}
+
+void ScanMatch::deskew(const MatchState& x) {
+  const Scan& s = *scan_.scan;
+  const Eigen::Quaterniond R_body_map = x.T_map_body.rotation.conjugate();
+  work_.motion.set(scan_.imu,
+                   {R_body_map * x.v_map, R_body_map * x.gravity_map, x.gyro_bias, x.accel_bias},
+                   scan_.T_body_lidar, s.stamp, s.end_time);
+  work_.points.resize(scan_.selected.size());
+  const auto span_s = static_cast<float>(to_seconds(s.end_time - s.stamp));
+  for (std::size_t i = 0; i < scan_.selected.size(); ++i) {
+    const ScanPoint& p = s.points[scan_.selected[i]];
+    work_.points.points[i] = work_.motion.deskew(p);
+    work_.points.age_s[i] = static_cast<float>(p.time_offset_ns) * 1e-9F - span_s;
+  }
+  deskewed_ = x;
+  book(Stage::kDeskew);
+}
+
+void ScanMatch::pair(const MatchState& x) {
+  registration::associate(map_, anchored(x.T_map_body, map_), scan_.T_body_lidar.translation,
+                          work_.points, options_.association, pool_, work_.pairs);
+  paired_ = x.T_map_body;
+  book(Stage::kAssociate);
+}
+
+/// Has the velocity moved the points by more than matters?
+bool ScanMatch::is_stale(const MatchState& x) const {
+  const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
+  return (x.v_map - deskewed_.v_map).norm() * span > kRedeskewM;
+}
+
+const NormalEquations& ScanMatch::linearise(const MatchState& x) {
+  const bool stale = calls_ == 0 || is_stale(x);
+  if (stale) deskew(x);
+  const bool far = (x.T_map_body.translation - paired_.translation).norm() > kRepairM ||
+                   so3::angle_between(x.T_map_body.rotation, paired_.rotation) > kRepairRad;
+  if (stale || far) pair(x);
+  const double anneal = kAnneal[std::min<std::size_t>(calls_++, kAnneal.size() - 1)];
+  raw_ = registration::linearise(work_.pairs, anchored(x.T_map_body, map_),
+                                 anneal * options_.robust_scale, pool_, work_.partials);
+  softened_ = raw_;
+  // The points still stand where the velocity of the last deskewing put them.
+  softened_.g += raw_.H.middleCols<3>(kVelocity) * (x.v_map - deskewed_.v_map);
+  if (!options_.velocity_from_skew) fix_velocity(softened_);
+  soften(options_.map_sigma_m, options_.map_sigma_rad, softened_);
+  book(Stage::kSolve);
+  return softened_;
+}
+
+}  // namespace holdfast::filter

@@ -1,0 +1,265 @@
+#include "holdfast/pipeline/graph_localizer.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "holdfast/registration/degeneracy.hpp"
+
+namespace holdfast::pipeline {
+namespace {
+
+using estimator::Matrix18d;
+using estimator::NodeState;
+
+constexpr double kMapRadiusM = 150.0;
+constexpr TimeNs kImuMemory = 2 * kSecond;
+constexpr double kLeastWeight = 30.0;
+constexpr double kCoarseFromM = 0.1;
+constexpr float kCoarseSurfaceSigmaM = 0.05F;
+constexpr double kMapErrorShare = 0.05;  // of the noise of its points, over the extent of a scan
+constexpr double kLeverM = 10.0;      // of the map's own error: how far its planes are away
+constexpr int kJumpAges = 4;          // intervals in which a bias may have jumped unnoticed
+constexpr double kMostScansAlike = 30;  // of the same part of the map, however slow the robot
+
+double largest_sigma(const Matrix18d& P, int offset) {
+  const Eigen::Matrix3d block = P.block<3, 3>(offset, offset);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(block, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
+}
+
+NodeState node_of(const filter::FilterState& s, const Eigen::Vector3d& gravity) {
+  return {s.t, s.T_map_body, s.v_map, s.accel_bias, s.gyro_bias, gravity};
+}
+
+filter::FilterState filter_state_of(const NodeState& x, const Matrix18d& P) {
+  return {x.t, x.T_map_body, x.v_map, x.accel_bias, x.gyro_bias, P.topLeftCorner<15, 15>()};
+}
+
+filter::MatchState match_state_of(const NodeState& x) {
+  return {x.T_map_body, x.v_map, x.accel_bias, x.gyro_bias, x.gravity_map};
+}
+
+}  // namespace
+
+GraphLocalizer::GraphLocalizer(map::PriorMap map, const Setup& setup, const SE3& T_map_body)
+    : setup_(setup),
+      start_(std::make_unique<baselines::MapFilter>(std::move(map), setup.start, T_map_body)),
+      pool_(setup.start.threads),
+      smoother_(setup.smoother) {
+  scan_.T_body_lidar = setup.start.T_body_lidar;
+}
+
+void GraphLocalizer::add_imu(const ImuSample& sample) {
+  imu_.add(sample);
+  if (start_) start_->add_imu(sample);
+}
+
+StepReport GraphLocalizer::add_scan(const Scan& scan) {
+  if (start_) return start(scan);
+  StepReport report;
+  report.stamp = scan.stamp;
+  report.pose_time = scan.end_time;
+  {
+    StageClock clock(report.times);
+    step(scan, clock, report);
+    clock.book(Stage::kHealth);
+  }
+  ++scan_number_;
+  return report;
+}
+
+StepReport GraphLocalizer::start(const Scan& scan) {
+  StepReport report = start_->add_scan(scan);
+  ++scan_number_;
+  if (report.state == State::kTracking || report.state == State::kDegraded) take_over();
+  return report;
+}
+
+/// The first node is what the filter knows.
+void GraphLocalizer::take_over() {
+  const filter::FilterState& found = start_->state();
+  Matrix18d P = Matrix18d::Identity() * std::pow(setup_.graph.gravity_sigma_m_s2, 2);
+  P.topLeftCorner<15, 15>() = found.P;
+  smoother_.reset(node_of(found, start_->map().info().gravity_map), P);
+  map_ = std::make_unique<map::PriorMap>(std::move(*start_).take_map());
+  start_.reset();
+}
+
+filter::UpdateOptions GraphLocalizer::options() const {
+  const auto& f = setup_.start.filter;
+  filter::UpdateOptions o;
+  o.association.gate_m = static_cast<float>(f.gate_m);
+  o.association.range_sigma_m = static_cast<float>(setup_.start.range_sigma_m);
+  o.association.surface_sigma_m = static_cast<float>(f.surface_sigma_m);
+  o.robust_scale = f.robust_scale;
+  // The map's own error over the extent of a scan is the same for all scans of one place: each of
+  // them may count only for its share of them.
+  const double alike = std::clamp(
+      setup_.graph.map_correlation_m / std::max(travel_per_scan_m_, 1e-9), 1.0, kMostScansAlike);
+  o.map_sigma_m = kMapErrorShare * map_->info().noise_m * std::sqrt(alike);
+  o.map_sigma_rad = o.map_sigma_m / kLeverM;
+  return o;
+}
+
+void GraphLocalizer::step(const Scan& scan, StageClock& clock, StepReport& report) {
+  if (!prepare(scan, report)) return;
+  clock.book(Stage::kSelect);
+  const NodeState before = smoother_.newest();
+  if (!predict(scan.end_time, report)) return;
+  const NodeState predicted = smoother_.newest();
+  clock.book(Stage::kPredict);
+  Match found = match(predicted, clock);
+  allow_for_bias_jump(found, clock);
+  clock.book(Stage::kSolve);
+  travel_per_scan_m_ =
+      (smoother_.newest().T_map_body.translation - before.T_map_body.translation).norm();
+  describe(found, report);
+  judge(found, report);
+  imu_.drop_before(scan.end_time - kImuMemory);
+}
+
+/// Selects the points, readings and tiles that the scan needs.
+bool GraphLocalizer::prepare(const Scan& scan, StepReport& report) {
+  const NodeState& last = smoother_.newest();
+  report.T_map_body = last.T_map_body;
+  if (scan.end_time <= last.t) {
+    report.state = State::kDeadReckoning;
+    report.reason = "scan is not later than the one before";
+    return false;
+  }
+  scan_.scan = &scan;
+  preprocess::select_points(scan, setup_.start.selection, scan_number_, scan_.selected);
+  imu_.segment(scan.stamp, scan.end_time, scan_.imu);
+  if (const auto focused = map_->focus(last.T_map_body.translation, kMapRadiusM); !focused) {
+    report.state = State::kLost;
+    report.reason = focused.error().message;
+    return false;
+  }
+  return true;
+}
+
+bool GraphLocalizer::predict(TimeNs to, StepReport& report) {
+  if (!imu_.segment(smoother_.newest().t, to, segment_)) return false;
+  report.imu_held_ns = segment_.held_ns;
+  smoother_.push(segment_);
+  return true;
+}
+
+GraphLocalizer::Match GraphLocalizer::match(const NodeState& predicted, StageClock& clock) {
+  Match found;
+  if (!scan_.selected.empty()) {
+    found = match_finely(options(), clock);
+    const double sigma = largest_sigma(smoother_.covariance_of_prediction(), NodeState::kP);
+    if (sigma > kCoarseFromM) {
+      const NodeState direct = smoother_.newest();
+      if (lead_by_coarse_planes(predicted, sigma, clock)) {
+        const Match led = match_finely(options(), clock);
+        if (led.equations.weight > found.equations.weight) {
+          found = led;
+        } else {
+          smoother_.set_guess(direct);
+          found = match_finely(options(), clock);
+        }
+      }
+    }
+  }
+  const double share =
+      found.equations.weight / std::max<double>(1.0, static_cast<double>(scan_.selected.size()));
+  found.usable = found.optimised.solved && found.equations.weight >= kLeastWeight &&
+                 share >= setup_.start.filter.min_inlier_share;
+  if (!found.usable) {
+    smoother_.set_guess(predicted);
+    smoother_.optimise([](const NodeState&) { return std::nullopt; });
+  }
+  return found;
+}
+
+/// IMU, odometry and map together; the map residual is linearised anew in every iteration.
+GraphLocalizer::Match GraphLocalizer::match_finely(const filter::UpdateOptions& options,
+                                                   StageClock& clock) {
+  filter::ScanMatch scan(*map_, scan_, options, pool_, work_, &clock);
+  estimator::OptimiseOptions how;
+  how.min_measurements = filter::ScanMatch::kCalls;
+  how.max_measurements = options.max_iterations;
+  Match found;
+  found.optimised = smoother_.optimise(
+      [&](const NodeState& x) -> std::optional<estimator::MapFactor> {
+        const auto& equations = scan.linearise(match_state_of(x));
+        if (scan.raw().weight < kLeastWeight) return std::nullopt;
+        return estimator::MapFactor(equations, x);
+      },
+      how);
+  found.equations = scan.raw();
+  return found;
+}
+
+/// Where the prediction may be off by more than the finest planes reach, coarser ones give a guess.
+bool GraphLocalizer::lead_by_coarse_planes(const NodeState& predicted, double sigma_m,
+                                           StageClock& clock) {
+  const filter::FilterState prior =
+      filter_state_of(predicted, smoother_.covariance_of_prediction());
+  filter::FilterState state = prior;
+  for (int level = sigma_m > 3.0 * kCoarseFromM ? 2 : 1; level > 0; --level) {
+    filter::UpdateOptions how = options();
+    how.association.level = level;
+    how.association.gate_m =
+        std::max(how.association.gate_m, static_cast<float>(3.0 * sigma_m));
+    how.association.surface_sigma_m = kCoarseSurfaceSigmaM;
+    how.association.ambiguity_sigmas = 0;
+    const auto update = filter::update_with_scan(*map_, scan_, predicted.gravity_map, how, pool_,
+                                                 work_, prior, state, &clock);
+    if (!update.usable) return false;
+  }
+  smoother_.set_guess(node_of(state, predicted.gravity_map));
+  return true;
+}
+
+/// A scan that contradicts the IMU is explained by a jump of its biases if that explains it better.
+void GraphLocalizer::allow_for_bias_jump(Match& match, StageClock& clock) {
+  if (!match.usable || smoother_.innovation(match.optimised) < setup_.graph.surprise) return;
+  int best_age = -1;
+  double best_gain = setup_.graph.surprise;
+  for (int age = 0; age < kJumpAges; ++age) {
+    const double gain = smoother_.bias_jump_gain(age);
+    if (gain <= best_gain) continue;
+    best_gain = gain;
+    best_age = age;
+  }
+  if (best_age < 0) return;
+  smoother_.allow_bias_jump(best_age);
+  match = match_finely(options(), clock);
+  match.usable = match.optimised.solved && match.equations.weight >= kLeastWeight;
+}
+
+void GraphLocalizer::describe(const Match& match, StepReport& report) const {
+  const auto& e = match.equations;
+  const Matrix18d P = smoother_.covariance_of_newest();
+  report.T_map_body = smoother_.newest().T_map_body;
+  report.matches = static_cast<int>(e.pairs);
+  report.inlier_share =
+      scan_.selected.empty() ? 0.0 : e.weight / static_cast<double>(scan_.selected.size());
+  report.mean_abs_residual_m = e.weight > 0 ? e.abs_residual / e.weight : 0.0;
+  report.sigma_trans_m = largest_sigma(P, NodeState::kP);
+  report.sigma_rot_rad = largest_sigma(P, NodeState::kR);
+  if (match.usable)
+    report.weak_directions =
+        registration::weak_directions(e.H, setup_.start.filter.weak_sigma_m);
+}
+
+void GraphLocalizer::judge(const Match& match, StepReport& report) const {
+  if (report.sigma_trans_m > setup_.start.filter.lost_sigma_m) {
+    report.state = State::kLost;
+    report.reason = "too long without a scan that fits the map";
+  } else if (!match.usable) {
+    report.state = State::kDeadReckoning;
+    report.reason = scan_.selected.empty() ? "no returns" : "the scan does not fit the map";
+  } else if (!report.weak_directions.empty()) {
+    report.state = State::kDegraded;
+    report.reason = "the scene does not determine every direction";
+  } else {
+    report.state = State::kTracking;
+  }
+}
+
+}  // namespace holdfast::pipeline

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "baselines/map_filter.hpp"
+#include "holdfast/estimator/fixed_lag_smoother.hpp"
+#include "holdfast/filter/scan_match.hpp"
+#include "holdfast/pipeline/scan_localizer.hpp"
+
+namespace holdfast::pipeline {
+
+/// What the graph adds to the settings of `map_filter`, with which it shares the matching.
+struct GraphConfig {
+  double gravity_sigma_m_s2 = 0.05;
+  double map_correlation_m = 0.5;
+  double surprise = 40.0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("gravity_sigma_m_s2", self.gravity_sigma_m_s2,
+          FieldDoc{"how well the map's gravity is known at the start, each axis", 1e-4, 1.0});
+    visit("map_correlation_m", self.map_correlation_m,
+          FieldDoc{"way over which the map's own error stays the same", 1e-3, 100.0});
+    visit("surprise", self.surprise,
+          FieldDoc{"squared Mahalanobis distance of scan and prediction from which a jump of the "
+                   "IMU's biases is considered",
+                   1.0, 1e6});
+  }
+};
+
+/// The default method (article 3.3): a fixed-lag graph over the last scans in which IMU, prior map
+/// and odometry meet.
+class GraphLocalizer : public ScanLocalizer {
+ public:
+  struct Setup {
+    baselines::MapFilter::Setup start;  ///< matching, selection, noise; and the start itself
+    estimator::SmootherConfig smoother;
+    GraphConfig graph;
+  };
+
+  /// `T_map_body` is the pose at the end of the first scan, to within Setup::start.
+  GraphLocalizer(map::PriorMap map, const Setup& setup, const SE3& T_map_body);
+
+  void add_imu(const ImuSample& sample) override;
+  StepReport add_scan(const Scan& scan) override;
+
+  const estimator::FixedLagSmoother& smoother() const { return smoother_; }
+
+ private:
+  /// What matching the newest scan gave.
+  struct Match {
+    registration::NormalEquations equations;  ///< of the scan alone
+    estimator::OptimiseReport optimised;
+    bool usable = false;
+  };
+
+  StepReport start(const Scan& scan);
+  void take_over();
+  void step(const Scan& scan, StageClock& clock, StepReport& report);
+  bool prepare(const Scan& scan, StepReport& report);
+  bool predict(TimeNs to, StepReport& report);
+  Match match(const estimator::NodeState& predicted, StageClock& clock);
+  Match match_finely(const filter::UpdateOptions& options, StageClock& clock);
+  bool lead_by_coarse_planes(const estimator::NodeState& predicted, double sigma_m,
+                             StageClock& clock);
+  void allow_for_bias_jump(Match& match, StageClock& clock);
+  filter::UpdateOptions options() const;
+  void describe(const Match& match, StepReport& report) const;
+  void judge(const Match& match, StepReport& report) const;
+
+  Setup setup_;
+  std::unique_ptr<baselines::MapFilter> start_;  ///< until it has found the pose
+  std::unique_ptr<map::PriorMap> map_;           ///< from then on
+  WorkerPool pool_;
+  preprocess::ImuBuffer imu_;
+  preprocess::ImuSegment segment_;
+  filter::UpdateWorkspace work_;
+  filter::SelectedScan scan_;
+  estimator::FixedLagSmoother smoother_;
+  std::uint64_t scan_number_ = 0;
+  double travel_per_scan_m_ = 0;
+};
+
+}  // namespace holdfast::pipeline
