@@ -72,7 +72,7 @@ Matrix15d chart_jacobian(const Vector15d& difference) {
   return J;
 }
 
-SE3 anchored(const FilterState& state, const map::PriorMap& map) {
+SE3 anchored(const FilterState& state, const ScanPairing& map) {
   return {state.T_map_body.rotation, state.T_map_body.translation - map.anchor()};
 }
 
@@ -84,7 +84,7 @@ bool moved(const FilterState& a, const FilterState& b, double metres, double rad
 /// The iteration's own state: where points were deskewed and paired, and the prior.
 class Iteration {
  public:
-  Iteration(const map::PriorMap& map, const SelectedScan& scan, const Eigen::Vector3d& gravity,
+  Iteration(const ScanPairing& map, const SelectedScan& scan, const Eigen::Vector3d& gravity,
             const UpdateOptions& options, WorkerPool& pool, UpdateWorkspace& work,
             const FilterState& prior, FilterState& state, StageClock* clock)
       : map_(map),
@@ -121,8 +121,8 @@ class Iteration {
   }
 
   void redo_pairs() {
-    registration::associate(map_, anchored(state_, map_), scan_.T_body_lidar.translation,
-                            work_.points, options_.association, pool_, work_.pairs);
+    map_.associate(anchored(state_, map_), scan_.T_body_lidar.translation, work_.points,
+                   options_.association, pool_, work_.pairs);
     paired_ = state_;
     book(Stage::kAssociate);
   }
@@ -171,7 +171,7 @@ class Iteration {
     if (clock_ != nullptr) clock_->book(stage);
   }
 
-  const map::PriorMap& map_;
+  const ScanPairing& map_;
   const SelectedScan& scan_;
   const Eigen::Vector3d& gravity_;
   const UpdateOptions& options_;
@@ -188,7 +188,7 @@ class Iteration {
 
 }  // namespace
 
-UpdateResult update_with_scan(const map::PriorMap& map, const SelectedScan& scan,
+UpdateResult update_with_scan(const ScanPairing& map, const SelectedScan& scan,
                               const Eigen::Vector3d& gravity, const UpdateOptions& options,
                               WorkerPool& pool, UpdateWorkspace& work, const FilterState& prior,
                               FilterState& state, StageClock* clock) {

@@ -46,15 +46,54 @@ struct UpdateWorkspace {
   std::vector<registration::NormalEquations> partials;
 };
 
+/// A map to pair points with, whatever holds its surfaces.
+class ScanPairing {
+ public:
+  virtual ~ScanPairing() = default;
+  virtual Eigen::Vector3d anchor() const = 0;
+  /// registration::associate.
+  virtual std::size_t associate(const SE3& T_anchor_body, const Eigen::Vector3d& p_body_lidar,
+                                const registration::BodyPoints& points,
+                                const registration::AssociationOptions& options, WorkerPool& pool,
+                                registration::Correspondences& out) const = 0;
+};
+
+/// Pairing with a map that registration::associate was made for.
+template <registration::SurfaceMap Map>
+class PairingWith final : public ScanPairing {
+ public:
+  explicit PairingWith(const Map& map) : map_(map) {}
+  Eigen::Vector3d anchor() const override { return map_.anchor(); }
+  std::size_t associate(const SE3& T_anchor_body, const Eigen::Vector3d& p_body_lidar,
+                        const registration::BodyPoints& points,
+                        const registration::AssociationOptions& options, WorkerPool& pool,
+                        registration::Correspondences& out) const override {
+    return registration::associate(map_, T_anchor_body, p_body_lidar, points, options, pool, out);
+  }
+
+ private:
+  const Map& map_;
+};
+
 /// Iterated update with one scan: Gauss-Newton, from `state`, on `prior` (a prediction at the
 /// scan's end, with its covariance) and all point-to-plane residuals. The residuals depend on the
 /// velocity too, since it moved the points during the scan; so a single scan can tell the velocity
 /// of a robot that starts on the move (UpdateOptions::velocity_from_skew). The map's own error is
 /// common to all points of a scan: a pose offset with `map_sigma` is marginalised out, which caps
 /// the information however many points there are.
-UpdateResult update_with_scan(const map::PriorMap& map, const SelectedScan& scan,
+UpdateResult update_with_scan(const ScanPairing& map, const SelectedScan& scan,
                               const Eigen::Vector3d& gravity, const UpdateOptions& options,
                               WorkerPool& pool, UpdateWorkspace& work, const FilterState& prior,
                               FilterState& state, StageClock* clock);
+
+/// The same with a map itself.
+template <registration::SurfaceMap Map>
+UpdateResult update_with_scan(const Map& map, const SelectedScan& scan,
+                              const Eigen::Vector3d& gravity, const UpdateOptions& options,
+                              WorkerPool& pool, UpdateWorkspace& work, const FilterState& prior,
+                              FilterState& state, StageClock* clock) {
+  return update_with_scan(PairingWith<Map>(map), scan, gravity, options, pool, work, prior, state,
+                          clock);
+}
 
 }  // namespace holdfast::filter

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <concepts>
 #include <vector>
 
 #include "holdfast/core/parallel.hpp"
@@ -37,6 +38,16 @@ struct Correspondences {
   void resize(std::size_t n);
 };
 
+/// Where surfaces are looked up. `find(level, p)` is the first surface of the cell that holds `p`
+/// (relative to the anchor, metres), none where nothing is known; its centre counts from `corner`.
+/// `anchor()` is the anchor's place in the frame of the map, in which poses are given.
+template <class Map>
+concept SurfaceMap = requires(const Map& map, const Eigen::Vector3f& p) {
+  { map.find(0, p).surface } -> std::convertible_to<const map::Surface*>;
+  { map.find(0, p).corner } -> std::convertible_to<Eigen::Vector3f>;
+  { map.anchor() } -> std::convertible_to<Eigen::Vector3d>;
+};
+
 /// How a point's plane is chosen and how well its distance is known.
 struct AssociationOptions {
   int level = 0;                   ///< resolution of the map that is asked first
@@ -49,11 +60,18 @@ struct AssociationOptions {
 };
 
 /// Pairs each point with the nearest plane of its cell at the pose `T_anchor_body` (article 3.2.2
-/// step 2; the planes are precomputed, a query is one look-up). The variance of a residual is that
-/// of the range seen along the normal, (sigma_r cos(incidence))^2, plus the plane's thickness: at
-/// grazing incidence a range error hardly moves a point off its plane. Returns the number of pairs.
-std::size_t associate(const map::PriorMap& map, const SE3& T_anchor_body,
-                      const Eigen::Vector3d& p_body_lidar, const BodyPoints& points,
-                      const AssociationOptions& options, WorkerPool& pool, Correspondences& out);
+/// step 2; the planes are precomputed, a query is one look-up; defined in associate.hpp). The
+/// variance of a residual is that of the range seen along the normal, (sigma_r cos(incidence))^2,
+/// plus the plane's thickness: at grazing incidence a range error hardly moves a point off its
+/// plane. Returns the number of pairs.
+template <SurfaceMap Map>
+std::size_t associate(const Map& map, const SE3& T_anchor_body, const Eigen::Vector3d& p_body_lidar,
+                      const BodyPoints& points, const AssociationOptions& options, WorkerPool& pool,
+                      Correspondences& out);
+
+extern template std::size_t associate(const map::PriorMap& map, const SE3& T_anchor_body,
+                                      const Eigen::Vector3d& p_body_lidar, const BodyPoints& points,
+                                      const AssociationOptions& options, WorkerPool& pool,
+                                      Correspondences& out);
 
 }  // namespace holdfast::registration
