@@ -13,7 +13,7 @@
 namespace holdfast::benchmarks {
 namespace {
 
-constexpr std::array<BenchInfo, 5> kBenches = {{
+constexpr std::array<BenchInfo, 6> kBenches = {{
     {"step",
      "time of a step, beside a k-d-tree registration and plain reading of the log",
      {1, 1},
@@ -31,6 +31,11 @@ constexpr std::array<BenchInfo, 5> kBenches = {{
      {1, 1},
      10,
      measure_features},
+    {"deskew",
+     "distance of points from their surfaces, raw and deskewed, on straights and in turns",
+     {1, 5},
+     60,
+     measure_deskew},
 }};
 
 constexpr std::uint64_t kMostSeeds = 1000;

@@ -27,4 +27,10 @@ Result<BenchReport> measure_simulator(const BenchOptions& options);
 /// of a scan on one thread. `threads` serves the simulation only.
 Result<BenchReport> measure_features(const BenchOptions& options);
 
+/// Table 1 of the article: how far points lie from the surfaces they were measured on, as they
+/// come, deskewed with the IMU and the state of the running localizer, and placed by the true
+/// poses; on straights and in turns; and the errors of the localizer with and without deskewing.
+/// `threads` drives run at a time, each on one thread.
+Result<BenchReport> measure_deskew(const BenchOptions& options);
+
 }  // namespace holdfast::benchmarks

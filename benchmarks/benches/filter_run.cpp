@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <numbers>
 
-#include "baselines/map_filter.hpp"
 #include "holdfast/pipeline/event_sequencer.hpp"
 
 namespace holdfast::benchmarks {
@@ -11,19 +10,6 @@ namespace {
 
 using baselines::MapFilter;
 using filter::FilterState;
-
-/// As pipeline::Localizer sets it up; a test compares their poses.
-MapFilter::Setup setup_of(const pipeline::Config& config) {
-  MapFilter::Setup setup;
-  setup.filter = config.map_filter;
-  setup.imu = config.imu;
-  setup.selection = config.preprocess;
-  setup.start = {config.start.position_m, config.start.rotation_deg * std::numbers::pi / 180.0,
-                 config.start.speed_m_s};
-  setup.range_sigma_m = config.lidar.range_sigma_m;
-  setup.T_body_lidar = config.T_body_lidar;
-  return setup;
-}
 
 /// Repeats what the filter did with a scan before it asked the map, from a copy of its state.
 class Repeater {
@@ -65,10 +51,22 @@ class Repeater {
 
 }  // namespace
 
+MapFilter::Setup filter_setup(const pipeline::Config& config) {
+  MapFilter::Setup setup;
+  setup.filter = config.map_filter;
+  setup.imu = config.imu;
+  setup.selection = config.preprocess;
+  setup.start = {config.start.position_m, config.start.rotation_deg * std::numbers::pi / 180.0,
+                 config.start.speed_m_s};
+  setup.range_sigma_m = config.lidar.range_sigma_m;
+  setup.T_body_lidar = config.T_body_lidar;
+  return setup;
+}
+
 Result<std::vector<FilteredScan>> run_filter(SensorSource& log, const SurveyedDrive& drive) {
   auto map = map::PriorMap::open(drive.map_dir);
   if (!map) return map.error();
-  const MapFilter::Setup setup = setup_of(drive.config);
+  const MapFilter::Setup setup = filter_setup(drive.config);
   MapFilter filter(std::move(*map), setup, drive.initial_pose);
   Repeater repeater(filter, setup);
   std::vector<FilteredScan> scans;
