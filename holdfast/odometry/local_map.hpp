@@ -1,0 +1,131 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "holdfast/core/fields.hpp"
+#include "holdfast/odometry/cell_table.hpp"
+#include "holdfast/registration/correspondences.hpp"
+
+namespace holdfast::odometry {
+
+struct LocalMapConfig {
+  double cell_m = 0.5;
+  double radius_m = 80.0;
+  double noise_slack = 1.5;
+  double plane_sigma_m = 0.02;
+  int full_weight = 200;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("cell_m", self.cell_m,
+          FieldDoc{"side of a cell of the local map; the coarser level has twice that", 0.05, 5.0});
+    visit("radius_m", self.radius_m, FieldDoc{"cells farther away are forgotten", 10.0, 300.0});
+    visit("noise_slack", self.noise_slack,
+          FieldDoc{"thickness of a plane, by the noise of a range, above which it is none", 1.0,
+                   10.0});
+    visit("plane_sigma_m", self.plane_sigma_m,
+          FieldDoc{"standard error up to which a plane is worth being matched", 1e-3, 1.0});
+    visit("full_weight", self.full_weight,
+          FieldDoc{"points after which a cell is left as it is, so that the map does not follow "
+                   "the odometry's own errors",
+                   10, 100000});
+  }
+};
+
+/// The surroundings of the last tens of metres as planes in cubic cells, made from the odometry's
+/// own scans. Each cell keeps running moments of its points; its plane is fitted anew when they
+/// have grown by a share. Memory is fixed: cells out of reach are forgotten, at need nearer ones.
+///
+/// A SurfaceMap: registration::associate and filter::update_with_scan take it like a prior map. A
+/// cell answers with a plane that its points determine to better than `plane_sigma_m`, with clutter
+/// where its points are no plane, and with nothing while they are too few or on a line.
+class LocalMap {
+ public:
+  static constexpr int kLevels = 2;
+
+  /// `range_sigma_m`: noise of the LiDAR along the ray.
+  LocalMap(const LocalMapConfig& config, double range_sigma_m);
+
+  struct Hit {
+    const map::Surface* surface = nullptr;
+    Eigen::Vector3f corner = Eigen::Vector3f::Zero();  ///< centre of the cell, from the anchor
+  };
+  /// The surface of the cell that holds `p` (relative to the anchor, metres).
+  Hit find(int level, const Eigen::Vector3f& p) const {
+    if (level >= kLevels) return {};
+    const Level& l = levels_[static_cast<std::size_t>(level)];
+    const Eigen::Vector3i cell = (p * l.cells_per_m).array().floor().cast<int>();
+    const std::uint32_t at = l.table.find(cell_key(cell + l.anchor_cell));
+    if (at == CellTable::kNone || !l.cells[at].known) return {};
+    return {&l.cells[at].surface, (cell.cast<float>().array() + 0.5F) * l.cell_m};
+  }
+
+  /// A place near the robot in the odometry's frame; positions count from it in float.
+  const Eigen::Vector3d& anchor() const { return anchor_; }
+
+  /// Adds points of a scan: deskewed, in the body frame at `T_odom_body`; `p_body_lidar` is where
+  /// they were seen from. Far points count less: an error of the rotation moves them more.
+  void insert(const std::vector<Eigen::Vector3f>& points, const SE3& T_odom_body,
+              const Eigen::Vector3d& p_body_lidar);
+
+  /// Moves the anchor to the robot and forgets some of the cells that are out of reach; call once a
+  /// scan.
+  void follow(const Eigen::Vector3d& p_odom);
+
+  void clear();
+
+  std::size_t cells(int level) const { return levels_[static_cast<std::size_t>(level)].used(); }
+  /// Points that found no room; 0 unless the surroundings are far larger than the map was made for.
+  std::uint64_t refused() const { return refused_; }
+  std::size_t memory_bytes() const;
+
+ private:
+  /// Points of one cell, relative to its centre.
+  struct Cell {
+    map::Surface surface{
+        Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), 0, 0, map::SurfaceKind::kClutter, 0};
+    Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+    std::array<float, 6> scatter{};  ///< sums of products about the mean: xx, xy, xz, yy, yz, zz
+    float weight = 0;
+    float refit_at = 0;  ///< weight from which on the plane is fitted anew
+    std::uint64_t key = 0;
+    bool known = false;  ///< surface holds a plane or clutter
+    bool in_use = false;
+  };
+  struct Level {
+    float cell_m = 0, cells_per_m = 0;
+    Eigen::Vector3i anchor_cell = Eigen::Vector3i::Zero();
+    CellTable table;
+    std::vector<Cell> cells;
+    std::vector<std::uint32_t> free;  ///< indices into cells
+    std::size_t swept = 0;            ///< where forgetting goes on
+    double radius_m = 0;              ///< smaller than configured while room is short
+
+    std::size_t used() const { return cells.size() - free.size(); }
+  };
+
+  void add(Level& level, const Eigen::Vector3f& p, float weight);
+  void add_to(const Level& level, Cell& cell, const Eigen::Vector3f& p, float weight);
+  void fit(const Level& level, Cell& cell) const;
+  void forget_far(Level& level, const Eigen::Vector3d& p_odom);
+  void set_anchor(const Eigen::Vector3d& p_odom);
+
+  LocalMapConfig config_;
+  float range_variance_;
+  std::array<Level, kLevels> levels_;
+  Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
+  std::uint64_t refused_ = 0;
+};
+
+static_assert(registration::SurfaceMap<LocalMap>);
+
+}  // namespace holdfast::odometry
+
+namespace holdfast::registration {
+extern template std::size_t associate(const odometry::LocalMap& map, const SE3& T_anchor_body,
+                                      const Eigen::Vector3d& p_body_lidar, const BodyPoints& points,
+                                      const AssociationOptions& options, WorkerPool& pool,
+                                      Correspondences& out);
+}  // namespace holdfast::registration
