@@ -49,7 +49,7 @@ TEST(LocalMap, APlaneIsAsGoodAsItSaysItIs) {
     RandomStream random(seed, "where");
     const Vector3d u = n.unitOrthogonal();
     const Vector3d at =
-        kMiddle() + random.uniform(-0.25, 0.25) * u + random.uniform(-0.25, 0.25) * n.cross(u);
+        middle + random.uniform(-0.25, 0.25) * u + random.uniform(-0.25, 0.25) * n.cross(u);
     const double error = hit.surface->normal.cast<double>().dot(
         at - (hit.corner + hit.surface->center).cast<double>());
     squares += error * error / (hit.surface->sigma_m * hit.surface->sigma_m);
