@@ -110,6 +110,10 @@ void add_hardships(CLI::App& command, SimulateArguments& arguments) {
                   "share of the world's movable objects (furniture, loads, cars, boards, signs) "
                   "that was moved, removed or added after the survey: map.pcd shows the world "
                   "before, run.bag the world after; 0 to 100 (default 0)")
+      ->transform([](std::string text) {
+        if (text.ends_with('%')) text.pop_back();
+        return text;
+      })
       ->type_name("PERCENT");
   command
       .add_option("--speed", arguments.speed_factor,
