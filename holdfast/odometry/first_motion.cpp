@@ -1,0 +1,124 @@
+#include "holdfast/odometry/first_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace holdfast::odometry {
+namespace {
+
+using filter::FilterState;
+
+constexpr double kStepM = 0.3;
+constexpr std::size_t kSearchPoints = 1500;
+constexpr double kBetter = 1.02;      // so much more must agree for a faster motion
+constexpr double kLeastShare = 0.15;  // of the points that must agree
+
+/// Displacements in the horizontal plane, shortest first; the guess before all.
+std::vector<Eigen::Vector3d> displacements(const Eigen::Vector3d& guess, double longest) {
+  std::vector<Eigen::Vector3d> all;
+  const int steps = static_cast<int>(std::ceil(longest / kStepM));
+  for (int i = -steps; i <= steps; ++i) {
+    for (int j = -steps; j <= steps; ++j) {
+      const Eigen::Vector3d d(kStepM * i, kStepM * j, 0);
+      if (d.norm() <= longest + 0.5 * kStepM) all.push_back(d);
+    }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
+  all.insert(all.begin(), guess);
+  return all;
+}
+
+void set_sigma(FilterState& state, int offset, double sigma) {
+  state.P.diagonal().segment<3>(offset).setConstant(sigma * sigma);
+}
+
+/// Where the second scan ends, as the gyroscope turns, displaced by `d` and standing still, so that
+/// the scan stays as skewed as the first one is.
+FilterState displaced(const FirstScan& first, const SE3& turned, const Eigen::Vector3d& d) {
+  FilterState state = first.state;
+  state.T_map_body = {turned.rotation, first.state.T_map_body.translation + d};
+  state.v_map.setZero();
+  state.P.setZero();
+  set_sigma(state, FilterState::kP, 0.2);
+  set_sigma(state, FilterState::kR, 0.01);
+  set_sigma(state, FilterState::kV, 1e-3);
+  set_sigma(state, FilterState::kBa, 1e-3);
+  set_sigma(state, FilterState::kBg, 1e-4);
+  return state;
+}
+
+filter::SelectedScan thinned(const filter::SelectedScan& scan) {
+  filter::SelectedScan few = scan;
+  const std::size_t n = scan.selected.size();
+  if (n <= kSearchPoints) return few;
+  few.selected.resize(kSearchPoints);
+  for (std::size_t k = 0; k < kSearchPoints; ++k) {
+    few.selected[k] = scan.selected[k * n / kSearchPoints];
+  }
+  return few;
+}
+
+}  // namespace
+
+void FirstScan::keep(const filter::SelectedScan& from, const FilterState& at) {
+  scan = *from.scan;
+  selected = from;
+  selected.scan = &scan;
+  state = at;
+  kept = true;
+}
+
+void begin_map(const FirstScan& first, const Eigen::Vector3d& gravity, LocalMap& map,
+               filter::UpdateWorkspace& work) {
+  const FilterState& s = first.state;
+  const Eigen::Quaterniond R_body_odom = s.T_map_body.rotation.conjugate();
+  work.motion.set(first.selected.imu,
+                  {R_body_odom * s.v_map, R_body_odom * gravity, s.gyro_bias, s.accel_bias},
+                  first.selected.T_body_lidar, first.scan.stamp, first.scan.end_time);
+  work.points.resize(first.selected.selected.size());
+  for (std::size_t i = 0; i < work.points.size(); ++i) {
+    work.points.points[i] = work.motion.deskew(first.scan.points[first.selected.selected[i]]);
+  }
+  map.clear();
+  map.follow(s.T_map_body.translation);
+  map.insert(work.points.points, s.T_map_body, first.selected.T_body_lidar.translation);
+}
+
+bool find_first_motion(FirstScan& first, const filter::SelectedScan& second, TimeNs second_end,
+                       double fastest_m_s, const Eigen::Vector3d& gravity,
+                       const filter::UpdateOptions& options, WorkerPool& pool, LocalMap& map,
+                       filter::UpdateWorkspace& work) {
+  const double dt = to_seconds(second_end - first.state.t);
+  const Eigen::Vector3d guess = dt * first.state.v_map;
+  first.state.v_map.setZero();
+  begin_map(first, gravity, map, work);
+  // The turn between the ends: the second scan's readings begin where the first one ends, or a
+  // little later; the gyroscope's mean rate fills the rest.
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  for (const ImuSample& s : second.imu.samples) rate += s.gyro_rad_s - first.state.gyro_bias;
+  rate /= static_cast<double>(std::max<std::size_t>(second.imu.samples.size(), 1));
+  const SE3 turned{(first.state.T_map_body.rotation * so3::exp(dt * rate)).normalized(),
+                   first.state.T_map_body.translation};
+  filter::UpdateOptions wide = options;
+  wide.max_iterations = 5;
+  const filter::SelectedScan few = thinned(second);
+  double best = kLeastShare * static_cast<double>(few.selected.size());
+  bool found = false;
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& d : displacements(guess, dt * fastest_m_s)) {
+    const FilterState prior = displaced(first, turned, d);
+    FilterState state = prior;
+    const auto result =
+        filter::update_with_scan(map, few, gravity, wide, pool, work, prior, state, nullptr);
+    if (!result.usable || result.equations.weight < kBetter * best) continue;
+    best = result.equations.weight;
+    found = true;
+    way = state.T_map_body.translation - first.state.T_map_body.translation;
+  }
+  first.state.v_map = way / dt;
+  begin_map(first, gravity, map, work);
+  return found;
+}
+
+}  // namespace holdfast::odometry

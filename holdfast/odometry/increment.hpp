@@ -1,0 +1,27 @@
+#pragma once
+
+#include "holdfast/filter/filter_state.hpp"
+
+namespace holdfast::odometry {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// Motion since the scan before, in the body frame of that scan: T_prev_cur = T_odom_prev^-1 *
+/// T_odom_cur. Errors in the order [position in prev, rotation perturbed on the right].
+struct Increment {
+  SE3 T_prev_cur;
+  Matrix6d covariance = Matrix6d::Identity();
+};
+
+/// The increment from `before`, by way of `predicted` (propagated from `before`, not yet corrected)
+/// to `after` (corrected). Errors of both ends are correlated: what the scan did not correct, the
+/// IMU carried over from before; the correlation follows from the gain of the correction and from
+/// the transition of the errors, here to first order over one scan.
+Increment increment_between(const filter::FilterState& before, const filter::FilterState& predicted,
+                            const filter::FilterState& after, const Eigen::Vector3d& gravity);
+
+/// Covariance of T_a_c = T_a_b * T_b_c from that of T_a_b and that of an independent increment
+/// T_b_c, both [position in the frame on the left, rotation on the right].
+Matrix6d compose_covariance(const SE3& T_a_b, const Matrix6d& P_a_b, const Increment& b_c);
+
+}  // namespace holdfast::odometry

@@ -1,0 +1,370 @@
+#include "holdfast/odometry/odometry.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
+
+#include "holdfast/registration/degeneracy.hpp"
+
+namespace holdfast::odometry {
+namespace {
+
+using filter::FilterState;
+using filter::UpdateResult;
+
+constexpr TimeNs kImuMemory = 2 * kSecond;
+constexpr int kFirstKeyframes = 5;    // scans taken at the start though the robot rests
+constexpr double kSkewToldM = 0.005;  // skew that is worth being estimated
+constexpr double kCoarseFromM = 0.1;  // uncertainty from which coarse planes are asked
+constexpr float kCoarseSurfaceSigmaM = 0.05F;
+constexpr double kSurprise = 40.0;  // chi-square of 6: once in two million scans
+constexpr TimeNs kSettle = kSecond * 3 / 10;
+constexpr double kAccelBiasJump = 0.3;  // m/s^2, what a bias may jump by
+constexpr double kGyroBiasJump = 0.03;  // rad/s
+constexpr double kFewOfUsual = 0.6;     // share of inliers, by the usual one, that is few
+constexpr int kContradictions = 3;      // scans in a row until the odometry counts as broken
+constexpr double kShareMemory = 0.05;
+constexpr std::size_t kEnoughPoints = 300;  // to contradict anything
+constexpr double kLongestFirstWayM = 3.0;   // between the first two scans
+constexpr double kFirstSpeedSigma = 0.5;    // m/s, of the way between two scans
+
+double largest_sigma(const Eigen::Matrix3d& P) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(P, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
+}
+
+double largest_sigma(const filter::Matrix15d& P, int offset) {
+  return largest_sigma(Eigen::Matrix3d(P.block<3, 3>(offset, offset)));
+}
+
+preprocess::ScanSelectionConfig selection_of(const Odometry::Setup& setup) {
+  preprocess::ScanSelectionConfig selection = setup.selection;
+  selection.max_points = std::min(selection.max_points, setup.odometry.max_points);
+  return selection;
+}
+
+void set_sigma(FilterState& state, int offset, double sigma) {
+  state.P.diagonal().segment<3>(offset).setConstant(sigma * sigma);
+}
+
+}  // namespace
+
+Odometry::Odometry(const Setup& setup)
+    : setup_(setup),
+      gravity_(0, 0, -setup.gravity_m_s2),
+      map_(setup.map, setup.range_sigma_m),
+      pool_(setup.threads) {
+  setup_.selection = selection_of(setup);
+  scan_.T_body_lidar = setup.T_body_lidar;
+}
+
+filter::UpdateOptions Odometry::options() const {
+  filter::UpdateOptions o;
+  o.association.gate_m = static_cast<float>(setup_.odometry.gate_m);
+  o.association.range_sigma_m = static_cast<float>(setup_.range_sigma_m);
+  o.association.surface_sigma_m = static_cast<float>(setup_.odometry.surface_sigma_m);
+  o.robust_scale = setup_.odometry.robust_scale;
+  o.map_sigma_m = setup_.odometry.common_sigma_m;
+  o.map_sigma_rad = 0.1 * o.map_sigma_m;  // its lever arm is 10 m
+  return o;
+}
+
+OdometryReport Odometry::add_scan(const Scan& scan) {
+  OdometryReport report;
+  report.step.stamp = scan.stamp;
+  report.step.pose_time = scan.end_time;
+  {
+    StageClock clock(report.step.times);
+    step(scan, clock, report);
+    clock.book(Stage::kHealth);
+  }
+  report.step.T_map_body = state_.T_map_body;
+  report.step.odom_epoch = epoch_;
+  report.v_odom = state_.v_map;
+  ++scan_number_;
+  return report;
+}
+
+void Odometry::step(const Scan& scan, StageClock& clock, OdometryReport& report) {
+  if (!prepare(scan, clock, report)) return;
+  if (phase_ == Phase::kNothing) {
+    level(scan);
+    wait_for_returns(report);
+  } else if (phase_ == Phase::kWaiting) {
+    predict(scan.end_time, report);
+    wait_for_returns(report);
+  } else if (phase_ == Phase::kFirstScan) {
+    second_scan(clock, report);
+  } else {
+    track(clock, report);
+  }
+  imu_.drop_before(scan.end_time - kImuMemory);
+}
+
+bool Odometry::prepare(const Scan& scan, StageClock& clock, OdometryReport& report) {
+  if (phase_ != Phase::kNothing && scan.end_time <= state_.t) {
+    report.step.state = State::kDeadReckoning;
+    report.step.reason = "scan is not later than the one before";
+    return false;
+  }
+  if (imu_.empty()) {
+    report.step.reason = "no IMU yet";
+    return false;
+  }
+  scan_.scan = &scan;
+  preprocess::select_points(scan, setup_.selection, scan_number_, scan_.selected);
+  imu_.segment(scan.stamp, scan.end_time, scan_.imu);
+  clock.book(Stage::kSelect);
+  return true;
+}
+
+/// The attitude in which the readings up to the end of the first scan point against gravity.
+void Odometry::level(const Scan& scan) {
+  imu_.segment(scan.end_time - kImuMemory, scan.end_time, segment_);
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  for (const ImuSample& s : segment_.samples) {
+    if (s.t >= segment_.measured_begin) force += s.accel_m_s2;
+  }
+  const Eigen::Vector3d up = force.normalized();
+  // x of `odom` is the body's x, seen from above.
+  Eigen::Vector3d x = Eigen::Vector3d::UnitX() - up.x() * up;
+  if (x.norm() < 1e-3) x = Eigen::Vector3d::UnitY() - up.y() * up;
+  x.normalize();
+  Eigen::Matrix3d R_odom_body;
+  R_odom_body << x.transpose(), up.cross(x).transpose(), up.transpose();
+  state_ = FilterState{};
+  state_.t = scan.end_time;
+  state_.T_map_body.rotation = Eigen::Quaterniond(R_odom_body).normalized();
+  state_.P.setZero();
+  // The frame is where the robot stands; that gravity is not quite along its z is as if the
+  // accelerometer had a bias.
+  set_sigma(state_, FilterState::kP, 1e-4);
+  set_sigma(state_, FilterState::kR, 1e-5);
+  set_sigma(state_, FilterState::kV, setup_.fastest_m_s);
+  set_sigma(state_, FilterState::kBa, 0.1);
+  set_sigma(state_, FilterState::kBg, 0.02);
+}
+
+/// A local map begins with the first scan that has returns.
+void Odometry::wait_for_returns(OdometryReport& report) {
+  phase_ = Phase::kWaiting;
+  report.step.state = State::kDeadReckoning;
+  if (scan_.selected.empty()) {
+    report.step.reason = "no returns";
+    return;
+  }
+  keyframes_ = contradictions_ = 0;
+  usual_share_ = 0;
+  drift_.setZero();
+  // The new map is where the robot is; only velocity and biases are uncertain.
+  const auto biases = state_.biases();
+  const Eigen::Matrix3d P_v = state_.P.block<3, 3>(FilterState::kV, FilterState::kV);
+  state_.P.setZero();
+  set_sigma(state_, FilterState::kP, 1e-4);
+  set_sigma(state_, FilterState::kR, 1e-5);
+  state_.P.block<3, 3>(FilterState::kV, FilterState::kV) = P_v;
+  state_.set_biases(biases);
+  first_.keep(scan_, state_);
+  last_surprise_ = report.step.pose_time;
+  phase_ = Phase::kFirstScan;
+  report.step.state = State::kTracking;
+  if (!report.broke) report.step.reason = "first scan of a local map";
+}
+
+void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
+  const double dt = to_seconds(report.step.pose_time - state_.t);
+  const bool found = !scan_.selected.empty() && dt * setup_.fastest_m_s < kLongestFirstWayM &&
+                     find_first_motion(first_, scan_, report.step.pose_time, setup_.fastest_m_s,
+                                       gravity_, options(), pool_, map_, work_);
+  clock.book(Stage::kStart);
+  if (!found) {
+    predict(report.step.pose_time, report);
+    wait_for_returns(report);
+    return;
+  }
+  state_ = first_.state;
+  set_sigma(state_, FilterState::kV, kFirstSpeedSigma);
+  const FilterState before = state_;
+  predict(report.step.pose_time, report);
+  const FilterState predicted = state_;
+  UpdateResult update = correct(clock);
+  if (update.usable) {
+    // Once more with the better velocity, which moved the points of both scans.
+    first_.state.v_map += state_.v_map - predicted.v_map;
+    begin_map(first_, gravity_, map_, work_);
+    update = correct_at(0, predicted, clock);
+  }
+  phase_ = Phase::kRunning;
+  last_keyframe_ = before.T_map_body;
+  accept(update, before, predicted, clock, report);
+}
+
+bool Odometry::predict(TimeNs to, OdometryReport& report) {
+  if (!imu_.segment(state_.t, to, segment_)) return false;
+  report.step.imu_held_ns = segment_.held_ns;
+  const bool holding = segment_.held_ns > filter::kLongestHold;
+  if (holding && !biases_before_hold_) biases_before_hold_ = state_.biases();
+  if (!holding && biases_before_hold_) {
+    state_.set_biases(*biases_before_hold_);
+    biases_before_hold_.reset();
+  }
+  propagate(state_, segment_, gravity_, setup_.imu);
+  return true;
+}
+
+UpdateResult Odometry::correct_at(int level, const FilterState& predicted, StageClock& clock) {
+  const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
+  filter::UpdateOptions how = options();
+  how.association.level = level;
+  // As long as nothing else tells the velocity, the skew of the scan does.
+  how.velocity_from_skew = largest_sigma(predicted.P, FilterState::kV) * span > kSkewToldM;
+  if (level > 0) {
+    const auto reach = static_cast<float>(3.0 * largest_sigma(predicted.P, FilterState::kP));
+    how.association.gate_m = std::max(how.association.gate_m, reach);
+    how.association.surface_sigma_m = kCoarseSurfaceSigmaM;
+  }
+  return update_with_scan(map_, scan_, gravity_, how, pool_, work_, predicted, state_, &clock);
+}
+
+UpdateResult Odometry::correct(StageClock& clock) {
+  if (scan_.selected.empty()) return {};
+  const FilterState predicted = state_;
+  const double growth = largest_sigma(predicted.P, FilterState::kP) - sigma_at_scan_m_;
+  if (growth > kCoarseFromM) {
+    // The pose may be off by more than the finest planes reach: coarser ones lead.
+    if (!correct_at(1, predicted, clock).usable) state_ = predicted;
+  }
+  UpdateResult update = correct_at(0, predicted, clock);
+  const double share = update.equations.weight / static_cast<double>(scan_.selected.size());
+  update.usable = update.usable && share >= setup_.odometry.min_inlier_share;
+  if (!update.usable) state_ = predicted;
+  return update;
+}
+
+/// Squared Mahalanobis distance between the scan's pose and the predicted one.
+double Odometry::surprise(const FilterState& predicted) const {
+  const Eigen::Matrix<double, 6, 1> moved = state_.minus(predicted).head<6>();
+  return moved.dot(predicted.P.topLeftCorner<6, 6>().ldlt().solve(moved));
+}
+
+/// The scan fits neither the local map nor the prediction. A crowd, or a new room, only does the
+/// former.
+bool Odometry::contradicted(const UpdateResult& update, double surprise) const {
+  if (scan_.selected.size() < kEnoughPoints) return false;
+  if (!update.usable) return true;
+  const double share = update.equations.weight / static_cast<double>(scan_.selected.size());
+  return surprise > kSurprise && share < kFewOfUsual * usual_share_;
+}
+
+/// A bias may have jumped, or the IMU may be worse than its configured noise: does the scan fit
+/// better if the biases are let go? If not, all stays as it was.
+UpdateResult Odometry::release_biases(const FilterState& before, const UpdateResult& update,
+                                      StageClock& clock, OdometryReport& report) {
+  const FilterState held = state_;
+  last_surprise_ = state_.t;
+  state_ = before;
+  state_.P.diagonal().segment<3>(FilterState::kBa).array() += kAccelBiasJump * kAccelBiasJump;
+  state_.P.diagonal().segment<3>(FilterState::kBg).array() += kGyroBiasJump * kGyroBiasJump;
+  predict(report.step.pose_time, report);
+  clock.book(Stage::kPredict);
+  const UpdateResult released = correct(clock);
+  if (released.usable && released.equations.weight > update.equations.weight) return released;
+  state_ = held;
+  return update;
+}
+
+void Odometry::track(StageClock& clock, OdometryReport& report) {
+  const FilterState before = state_;
+  predict(report.step.pose_time, report);
+  const FilterState predicted = state_;
+  clock.book(Stage::kPredict);
+  const double growth = largest_sigma(predicted.P, FilterState::kP) - sigma_at_scan_m_;
+  if (growth > setup_.odometry.lost_sigma_m) {
+    begin_epoch("too long without a scan that fits", report);
+    return;
+  }
+  UpdateResult update = correct(clock);
+  double surprised = update.usable ? surprise(predicted) : 0.0;
+  if (contradicted(update, surprised)) {
+    state_ = predicted;
+    update.usable = false;
+    if (++contradictions_ >= kContradictions) {
+      begin_epoch("scans contradict the local map and the prediction", report);
+      return;
+    }
+  } else {
+    contradictions_ = 0;
+    if (surprised > kSurprise && state_.t >= last_surprise_ + kSettle) {
+      update = release_biases(before, update, clock, report);
+    }
+  }
+  accept(update, before, predicted, clock, report);
+}
+
+/// What becomes of a scan that was matched, or could not be.
+void Odometry::accept(const UpdateResult& update, const FilterState& before,
+                      const FilterState& predicted, StageClock& clock, OdometryReport& report) {
+  report.corrected = update.usable;
+  add_increment(before, predicted, report);
+  describe(update, report);
+  map_.follow(state_.T_map_body.translation);
+  if (!update.usable) {
+    report.step.state = State::kDeadReckoning;
+    report.step.reason =
+        scan_.selected.empty() ? "no returns" : "the scan does not fit the local map";
+    return;
+  }
+  sigma_at_scan_m_ = largest_sigma(state_.P, FilterState::kP);
+  const double memory = keyframes_ == 0 ? 1.0 : kShareMemory;
+  usual_share_ += memory * (report.step.inlier_share - usual_share_);
+  const bool weak = !report.step.weak_directions.empty();
+  report.step.state = weak ? State::kDegraded : State::kTracking;
+  if (weak) report.step.reason = "the scene does not determine every direction";
+  extend_map();
+  clock.book(Stage::kHealth);
+}
+
+void Odometry::extend_map() {
+  const SE3 way = last_keyframe_.inverse() * state_.T_map_body;
+  const double turn = so3::angle_between(last_keyframe_.rotation, state_.T_map_body.rotation);
+  if (keyframes_ >= kFirstKeyframes && way.translation.norm() < setup_.odometry.keyframe_m &&
+      turn < setup_.odometry.keyframe_deg * std::numbers::pi / 180.0) {
+    return;
+  }
+  map_.insert(work_.points.points, state_.T_map_body, scan_.T_body_lidar.translation);
+  last_keyframe_ = state_.T_map_body;
+  ++keyframes_;
+}
+
+void Odometry::begin_epoch(const char* reason, OdometryReport& report) {
+  ++epoch_;
+  report.broke = true;
+  report.step.reason = reason;
+  sigma_at_scan_m_ = 0;
+  wait_for_returns(report);
+}
+
+void Odometry::add_increment(const FilterState& before, const FilterState& predicted,
+                             OdometryReport& report) {
+  Increment increment = increment_between(before, predicted, state_, gravity_);
+  increment.covariance *= setup_.odometry.inflation;
+  const SE3 T_epoch{before.T_map_body.rotation, Eigen::Vector3d::Zero()};
+  drift_ = compose_covariance(T_epoch, drift_, increment);
+  report.increment = increment;
+}
+
+void Odometry::describe(const UpdateResult& update, OdometryReport& report) const {
+  const auto& e = update.equations;
+  StepReport& step = report.step;
+  step.matches = static_cast<int>(e.pairs);
+  step.inlier_share =
+      scan_.selected.empty() ? 0.0 : e.weight / static_cast<double>(scan_.selected.size());
+  step.mean_abs_residual_m = e.weight > 0 ? e.abs_residual / e.weight : 0.0;
+  step.sigma_trans_m = largest_sigma(Eigen::Matrix3d(drift_.topLeftCorner<3, 3>()));
+  step.sigma_rot_rad = largest_sigma(Eigen::Matrix3d(drift_.bottomRightCorner<3, 3>()));
+  if (update.usable) {
+    step.weak_directions = registration::weak_directions(e.H, setup_.odometry.weak_sigma_m);
+  }
+}
+
+}  // namespace holdfast::odometry

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <optional>
+
+#include "holdfast/core/step_report.hpp"
+#include "holdfast/odometry/first_motion.hpp"
+#include "holdfast/odometry/increment.hpp"
+#include "holdfast/odometry/odometry_config.hpp"
+#include "holdfast/preprocess/scan_selection.hpp"
+
+namespace holdfast::odometry {
+
+/// What came of one scan.
+struct OdometryReport {
+  /// With T_odom_body in place of T_map_body; sigmas are those of the drift since the epoch began.
+  StepReport step;
+  Eigen::Vector3d v_odom = Eigen::Vector3d::Zero();  ///< m/s, in the odometry's frame
+  /// Motion since the scan before; none for the first scan, and where the odometry broke in
+  /// between.
+  std::optional<Increment> increment;
+  bool broke = false;      ///< a new local map begins with this scan; step.odom_epoch has grown
+  bool corrected = false;  ///< the scan told the pose, not the IMU alone
+};
+
+/// LiDAR-inertial odometry: an iterated error-state filter with IMU prediction, matched to a local
+/// map of planes that it makes itself. It takes nothing from a prior map: as a witness it must not
+/// share an error with it. The frame `odom` has its origin at the body at the end of the first
+/// scan, z against gravity and the body's heading as x.
+///
+/// It breaks where a scan contradicts the prediction and the local map alike (the robot was
+/// carried), and after a time without usable scans that the IMU cannot bridge: then a new local map
+/// begins, `odom_epoch` counts up, and the pose goes on from the prediction, which is as wrong as
+/// the carrying was far.
+///
+/// Same calls, same bits, for any number of threads. Not thread-safe. Memory is fixed.
+class Odometry {
+ public:
+  struct Setup {
+    OdometryConfig odometry;
+    LocalMapConfig map;
+    filter::ImuNoiseConfig imu;
+    preprocess::ScanSelectionConfig selection;  ///< max_points: OdometryConfig's
+    double range_sigma_m = 0.02;
+    double fastest_m_s = 15.0;  ///< that the robot may have at the start
+    double gravity_m_s2 = 9.81;
+    SE3 T_body_lidar;
+    int threads = 1;
+  };
+
+  explicit Odometry(const Setup& setup);
+
+  /// Readings in ascending order; others are refused and counted.
+  void add_imu(const ImuSample& sample) { imu_.add(sample); }
+
+  /// The pose at the scan's last point. IMU up to that time should have been added; where it was
+  /// not, the last reading is held and the report says for how long.
+  OdometryReport add_scan(const Scan& scan);
+
+  const filter::FilterState& state() const { return state_; }
+  const LocalMap& map() const { return map_; }
+  const preprocess::ImuBuffer& imu() const { return imu_; }
+
+ private:
+  enum class Phase { kNothing, kWaiting, kFirstScan, kRunning };
+
+  void step(const Scan& scan, StageClock& clock, OdometryReport& report);
+  bool prepare(const Scan& scan, StageClock& clock, OdometryReport& report);
+  void level(const Scan& scan);
+  void wait_for_returns(OdometryReport& report);
+  void second_scan(StageClock& clock, OdometryReport& report);
+  void track(StageClock& clock, OdometryReport& report);
+  bool predict(TimeNs to, OdometryReport& report);
+  filter::UpdateResult correct(StageClock& clock);
+  filter::UpdateResult correct_at(int level, const filter::FilterState& predicted,
+                                  StageClock& clock);
+  filter::UpdateResult release_biases(const filter::FilterState& before,
+                                      const filter::UpdateResult& update, StageClock& clock,
+                                      OdometryReport& report);
+  double surprise(const filter::FilterState& predicted) const;
+  bool contradicted(const filter::UpdateResult& update, double surprise) const;
+  void accept(const filter::UpdateResult& update, const filter::FilterState& before,
+              const filter::FilterState& predicted, StageClock& clock, OdometryReport& report);
+  void extend_map();
+  void begin_epoch(const char* reason, OdometryReport& report);
+  void add_increment(const filter::FilterState& before, const filter::FilterState& predicted,
+                     OdometryReport& report);
+  void describe(const filter::UpdateResult& update, OdometryReport& report) const;
+  filter::UpdateOptions options() const;
+
+  Setup setup_;
+  Eigen::Vector3d gravity_;
+  LocalMap map_;
+  WorkerPool pool_;
+  preprocess::ImuBuffer imu_;
+  preprocess::ImuSegment segment_;
+  filter::UpdateWorkspace work_;
+  filter::SelectedScan scan_;
+  FirstScan first_;
+  filter::FilterState state_;
+  Phase phase_ = Phase::kNothing;
+  std::uint64_t scan_number_ = 0;
+  int epoch_ = 0;
+  int keyframes_ = 0;       ///< of this epoch
+  int contradictions_ = 0;  ///< scans in a row
+  double usual_share_ = 0;  ///< of inliers, running mean
+  SE3 last_keyframe_;
+  Matrix6d drift_ = Matrix6d::Zero();  ///< covariance of T_odom_body since the epoch began
+  double sigma_at_scan_m_ = 0;         ///< position, when a scan last told it
+  TimeNs last_surprise_ = 0;
+  std::optional<filter::FilterState::Biases> biases_before_hold_;  ///< while the IMU is silent
+};
+
+}  // namespace holdfast::odometry
