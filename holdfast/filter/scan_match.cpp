@@ -1,6 +1,5 @@
 #include "holdfast/filter/scan_match.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 
@@ -17,25 +16,6 @@ constexpr std::array<double, ScanMatch::kCalls> kAnneal = {4.0, 2.0, 1.0};
 
 SE3 anchored(const SE3& T_map_body, const map::PriorMap& map) {
   return {T_map_body.rotation, T_map_body.translation - map.anchor()};
-}
-
-/// Takes the motion during the scan as known.
-void fix_velocity(NormalEquations& e) {
-  e.H.middleRows<3>(kVelocity).setZero();
-  e.H.middleCols<3>(kVelocity).setZero();
-  e.g.segment<3>(kVelocity).setZero();
-}
-
-/// Marginalises a pose offset common to all points of the scan out of the equations.
-void soften(double sigma_m, double sigma_rad, NormalEquations& e) {
-  Eigen::Matrix<double, 6, 6> S = e.H.topLeftCorner<6, 6>();
-  S.diagonal().head<3>().array() += 1.0 / (sigma_m * sigma_m);
-  S.diagonal().tail<3>().array() += 1.0 / (sigma_rad * sigma_rad);
-  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(S);
-  const Eigen::Matrix<double, 9, 6> cross = e.H.leftCols<6>();
-  e.g -= cross * solver.solve(e.g.head<6>());
-  e.H -= cross * solver.solve(cross.transpose());
-  e.H = (0.5 * (e.H + e.H.transpose())).eval();
 }
 
 }  // namespace
@@ -87,7 +67,7 @@ const NormalEquations& ScanMatch::linearise(const MatchState& x) {
   // The points still stand where the velocity of the last deskewing put them.
   softened_.g += raw_.H.middleCols<3>(kVelocity) * (x.v_map - deskewed_.v_map);
   if (!options_.velocity_from_skew) fix_velocity(softened_);
-  soften(options_.map_sigma_m, options_.map_sigma_rad, softened_);
+  marginalise(map_error(options_, to_seconds(scan_.scan->end_time - scan_.scan->stamp)), softened_);
   book(Stage::kSolve);
   return softened_;
 }

@@ -44,26 +44,6 @@ void deskew(const SelectedScan& scan, const FilterState& state, const Eigen::Vec
   }
 }
 
-/// Marginalises a pose offset common to all points of the scan (the map's own error) out of the
-/// equations.
-void soften(const UpdateOptions& options, NormalEquations& e) {
-  Eigen::Matrix<double, 6, 6> S = e.H.topLeftCorner<6, 6>();
-  S.diagonal().head<3>().array() += 1.0 / (options.map_sigma_m * options.map_sigma_m);
-  S.diagonal().tail<3>().array() += 1.0 / (options.map_sigma_rad * options.map_sigma_rad);
-  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(S);
-  const Eigen::Matrix<double, 9, 6> cross = e.H.leftCols<6>();
-  e.g -= cross * solver.solve(e.g.head<6>());
-  e.H -= cross * solver.solve(cross.transpose());
-  e.H = (0.5 * (e.H + e.H.transpose())).eval();
-}
-
-/// Takes the motion during the scan as known.
-void fix_velocity(NormalEquations& e) {
-  e.H.middleRows<3>(kVelocity).setZero();
-  e.H.middleCols<3>(kVelocity).setZero();
-  e.g.segment<3>(kVelocity).setZero();
-}
-
 /// d(x [-] prior)/d(error): the identity but for the rotation.
 Matrix15d chart_jacobian(const Vector15d& difference) {
   Matrix15d J = Matrix15d::Identity();
@@ -146,7 +126,8 @@ class Iteration {
     // The points still stand where the velocity of the last deskewing put them.
     softened.g += e.H.middleCols<3>(kVelocity) * (state_.v_map - deskewed_.v_map);
     if (!options_.velocity_from_skew) fix_velocity(softened);
-    soften(options_, softened);
+    const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
+    marginalise(map_error(options_, span), softened);
     const Vector15d difference = state_.minus(prior_);
     const Matrix15d J = chart_jacobian(difference);
     Matrix15d A = J.transpose() * prior_information_ * J;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "holdfast/core/parallel.hpp"
 #include "holdfast/core/stage_clock.hpp"
 #include "holdfast/filter/filter_state.hpp"
+#include "holdfast/filter/map_error.hpp"
 #include "holdfast/map/prior_map.hpp"
 #include "holdfast/preprocess/deskew.hpp"
 #include "holdfast/registration/normal_equations.hpp"
@@ -30,6 +32,13 @@ struct UpdateOptions {
   /// start on the move); otherwise the prediction knows it far better.
   bool velocity_from_skew = false;
 };
+
+/// The map's own error in a scan that lasts `span_s`: over its time it may change by as much as it
+/// is.
+inline MapError map_error(const UpdateOptions& options, double span_s) {
+  return {options.map_sigma_m, options.map_sigma_rad,
+          2.0 * options.map_sigma_m / std::max(span_s, 1e-3)};
+}
 
 /// What an update found.
 struct UpdateResult {

@@ -17,7 +17,6 @@ constexpr TimeNs kImuMemory = 2 * kSecond;
 constexpr double kLeastWeight = 30.0;
 constexpr double kCoarseFromM = 0.1;
 constexpr float kCoarseSurfaceSigmaM = 0.05F;
-constexpr double kMapErrorShare = 0.05;  // of the noise of its points, over the extent of a scan
 constexpr double kLeverM = 10.0;      // of the map's own error: how far its planes are away
 constexpr int kJumpAges = 4;          // intervals in which a bias may have jumped unnoticed
 constexpr double kMostScansAlike = 30;  // of the same part of the map, however slow the robot
@@ -97,7 +96,7 @@ filter::UpdateOptions GraphLocalizer::options() const {
   // them may count only for its share of them.
   const double alike = std::clamp(
       setup_.graph.map_correlation_m / std::max(travel_per_scan_m_, 1e-9), 1.0, kMostScansAlike);
-  o.map_sigma_m = kMapErrorShare * map_->info().noise_m * std::sqrt(alike);
+  o.map_sigma_m = setup_.graph.map_error_share * map_->info().noise_m * std::sqrt(alike);
   o.map_sigma_rad = o.map_sigma_m / kLeverM;
   return o;
 }

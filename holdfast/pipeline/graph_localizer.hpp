@@ -13,6 +13,7 @@ namespace holdfast::pipeline {
 /// What the graph adds to the settings of `map_filter`, with which it shares the matching.
 struct GraphConfig {
   double gravity_sigma_m_s2 = 0.05;
+  double map_error_share = 0.05;
   double map_correlation_m = 0.5;
   double surprise = 40.0;
 
@@ -20,6 +21,9 @@ struct GraphConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("gravity_sigma_m_s2", self.gravity_sigma_m_s2,
           FieldDoc{"how well the map's gravity is known at the start, each axis", 1e-4, 1.0});
+    visit("map_error_share", self.map_error_share,
+          FieldDoc{"the map's error over the extent of a scan, as a share of its points' noise",
+                   1e-4, 10.0});
     visit("map_correlation_m", self.map_correlation_m,
           FieldDoc{"way over which the map's own error stays the same", 1e-3, 100.0});
     visit("surprise", self.surprise,

@@ -296,7 +296,8 @@ void line_through(const Neighbourhood& n, double cell_m, const FitOptions& optio
 
 /// Enough points to tell that they lie on no plane.
 bool is_clutter(const Neighbourhood& n, const FitOptions& options) {
-  return options.planes && options.lines && n.own.size() >= static_cast<std::size_t>(options.min_support);
+  return options.planes && options.lines &&
+         n.own.size() >= static_cast<std::size_t>(options.min_support);
 }
 
 /// Do these planes together explain the cell's own points, but for stray ones?

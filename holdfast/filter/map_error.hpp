@@ -1,0 +1,22 @@
+#pragma once
+
+#include "holdfast/registration/normal_equations.hpp"
+
+namespace holdfast::filter {
+
+/// The prior map's own error as a scan feels it: common to all of its points, and so not averaged
+/// out by their number. Standard deviations of a pose offset, and of its drift from the first to
+/// the last point, which looks like a velocity.
+struct MapError {
+  double position_m = 0.001;
+  double rotation_rad = 0.0001;
+  double velocity_m_s = 0.02;
+};
+
+/// Marginalises the map's own error out of the equations, which caps their information.
+void marginalise(const MapError& error, registration::NormalEquations& equations);
+
+/// Takes the motion during the scan as known.
+void fix_velocity(registration::NormalEquations& equations);
+
+}  // namespace holdfast::filter
