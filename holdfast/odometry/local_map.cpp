@@ -23,6 +23,8 @@ constexpr float kRangeOfHalfWeightM = 40;  // 0.5 mrad are as much as the noise 
 constexpr float kFirstFit = 6;
 constexpr float kGrowth = 1.25F;   // between fits
 constexpr float kFloorM = 0.003F;  // roughness that every wall has
+constexpr float kFanM = 0.25F;     // nearer to the LiDAR no plane passes
+constexpr float kFanSine = 0.04F;  // nor at a smaller angle to the rays
 constexpr double kLeastRadiusM = 10.0;
 constexpr double kNearlyFull = 0.95, kRoomy = 0.7;
 
@@ -60,16 +62,17 @@ void LocalMap::insert(const std::vector<Eigen::Vector3f>& points, const SE3& T_o
   const Eigen::Matrix3f R = T_odom_body.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f t = (T_odom_body.translation - anchor_).cast<float>();
   const Eigen::Vector3f lidar = p_body_lidar.cast<float>();
+  const Eigen::Vector3f lidar_in_map = R * lidar + t;
   constexpr float kHalf = 1.0F / (kRangeOfHalfWeightM * kRangeOfHalfWeightM);
   for (const Eigen::Vector3f& q : points) {
     const float weight = 1.0F / (1.0F + (q - lidar).squaredNorm() * kHalf);
-    const Eigen::Vector3f p = R * q + t;
-    for (Level& level : levels_) add(level, p, weight);
+    const Sighting seen{R * q + t, lidar_in_map, weight};
+    for (Level& level : levels_) add(level, seen);
   }
 }
 
-void LocalMap::add(Level& level, const Eigen::Vector3f& p, float weight) {
-  const Eigen::Vector3i local = (p * level.cells_per_m).array().floor().cast<int>();
+void LocalMap::add(Level& level, const Sighting& seen) {
+  const Eigen::Vector3i local = (seen.p * level.cells_per_m).array().floor().cast<int>();
   const std::uint64_t key = cell_key(local + level.anchor_cell);
   std::uint32_t at = level.table.find(key);
   if (at == CellTable::kNone) {
@@ -86,17 +89,18 @@ void LocalMap::add(Level& level, const Eigen::Vector3f& p, float weight) {
     level.cells[at].refit_at = kFirstFit;
   }
   const Eigen::Vector3f centre = (local.cast<float>().array() + 0.5F) * level.cell_m;
-  add_to(level, level.cells[at], p - centre, weight);
+  add_to(level, level.cells[at], {seen.p - centre, seen.lidar - centre, seen.weight});
 }
 
-void LocalMap::add_to(const Level& level, Cell& cell, const Eigen::Vector3f& p, float weight) {
+void LocalMap::add_to(const Level& level, Cell& cell, const Sighting& seen) {
   if (cell.weight >= static_cast<float>(config_.full_weight)) return;
   // West's running moments: nothing cancels.
-  const float sum = cell.weight + weight;
-  const Eigen::Vector3f d = p - cell.mean;
-  const float share = weight / sum;
+  const float sum = cell.weight + seen.weight;
+  const Eigen::Vector3f d = seen.p - cell.mean;
+  const float share = seen.weight / sum;
   const float w = cell.weight * share;
   cell.mean += share * d;
+  cell.seen_from += share * (seen.lidar - cell.seen_from);
   cell.scatter[0] += w * d.x() * d.x();
   cell.scatter[1] += w * d.x() * d.y();
   cell.scatter[2] += w * d.x() * d.z();
@@ -105,6 +109,14 @@ void LocalMap::add_to(const Level& level, Cell& cell, const Eigen::Vector3f& p, 
   cell.scatter[5] += w * d.z() * d.z();
   cell.weight = sum;
   if (sum >= cell.refit_at) fit(level, cell);
+}
+
+/// Points of one beam that bends round a corner lie in the plane in which the beam turns. It would
+/// travel with the LiDAR and hold it back; a wall is known from it by passing at a distance.
+bool LocalMap::is_fan(const Cell& cell, const Eigen::Vector3f& normal) const {
+  const Eigen::Vector3f ray = cell.mean - cell.seen_from;
+  const float past = std::abs(normal.dot(ray));
+  return past < kFanM || past < kFanSine * ray.norm();
 }
 
 void LocalMap::fit(const Level& level, Cell& cell) const {
@@ -132,11 +144,12 @@ void LocalMap::fit(const Level& level, Cell& cell) const {
   const float tilts =
       lever_sq / std::max(variance[1], 1e-8F) + lever_sq / std::max(variance[2], 1e-8F);
   const float sigma = std::sqrt(scale / n * (1.0F + tilts));
-  cell.known = sigma < static_cast<float>(config_.plane_sigma_m);
   cell.surface.kind = map::SurfaceKind::kPlane;
   cell.surface.center = cell.mean;
   cell.surface.normal = solver.eigenvectors().col(0).cast<float>().normalized();
   cell.surface.sigma_m = sigma;
+  cell.known =
+      sigma < static_cast<float>(config_.plane_sigma_m) && !is_fan(cell, cell.surface.normal);
 }
 
 void LocalMap::set_anchor(const Eigen::Vector3d& p_odom) {

@@ -11,9 +11,9 @@
 namespace holdfast::odometry {
 
 struct LocalMapConfig {
-  double cell_m = 0.5;
+  double cell_m = 0.25;
   double radius_m = 80.0;
-  double noise_slack = 1.5;
+  double noise_slack = 1.2;
   double plane_sigma_m = 0.02;
   int full_weight = 200;
 
@@ -87,6 +87,7 @@ class LocalMap {
     map::Surface surface{
         Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), 0, 0, map::SurfaceKind::kClutter, 0};
     Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+    Eigen::Vector3f seen_from = Eigen::Vector3f::Zero();  ///< mean place of the LiDAR
     std::array<float, 6> scatter{};  ///< sums of products about the mean: xx, xy, xz, yy, yz, zz
     float weight = 0;
     float refit_at = 0;  ///< weight from which on the plane is fitted anew
@@ -106,8 +107,14 @@ class LocalMap {
     std::size_t used() const { return cells.size() - free.size(); }
   };
 
-  void add(Level& level, const Eigen::Vector3f& p, float weight);
-  void add_to(const Level& level, Cell& cell, const Eigen::Vector3f& p, float weight);
+  /// A point and the LiDAR that saw it, relative to the anchor or to a cell's centre.
+  struct Sighting {
+    Eigen::Vector3f p, lidar;
+    float weight;
+  };
+  void add(Level& level, const Sighting& seen);
+  void add_to(const Level& level, Cell& cell, const Sighting& seen);
+  bool is_fan(const Cell& cell, const Eigen::Vector3f& normal) const;
   void fit(const Level& level, Cell& cell) const;
   void forget_far(Level& level, const Eigen::Vector3d& p_odom);
   void set_anchor(const Eigen::Vector3d& p_odom);
