@@ -7,7 +7,7 @@
 #include "baselines/map_filter.hpp"
 #include "holdfast/estimator/smoother_options.hpp"
 #include "holdfast/io/config_io.hpp"
-#include "holdfast/pipeline/graph_localizer.hpp"
+#include "holdfast/pipeline/methods/graph_localizer.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 
 namespace holdfast::pipeline {
@@ -44,7 +44,7 @@ struct StartConfig {
 struct Config {
   SE3 T_body_lidar;
   bool has_T_body_lidar = false;
-  std::string method = "graph";
+  std::string method = "map_filter";
   LidarConfig lidar;
   filter::ImuNoiseConfig imu;
   StartConfig start;
@@ -62,7 +62,7 @@ struct Config {
         &self.has_T_body_lidar);
     visit("method", self.method,
           FieldDoc{"localizer", -std::numeric_limits<double>::infinity(),
-                   std::numeric_limits<double>::infinity(), "graph|map_filter"});
+                   std::numeric_limits<double>::infinity(), "map_filter|graph"});
   }
 };
 

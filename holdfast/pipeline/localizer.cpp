@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "baselines/map_filter.hpp"
-#include "holdfast/pipeline/graph_localizer.hpp"
+#include "holdfast/pipeline/methods/graph_localizer.hpp"
 
 namespace holdfast::pipeline {
 namespace {

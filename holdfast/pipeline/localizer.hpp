@@ -7,7 +7,7 @@
 #include "holdfast/core/step_report.hpp"
 #include "holdfast/map/prior_map.hpp"
 #include "holdfast/pipeline/config.hpp"
-#include "holdfast/pipeline/scan_localizer.hpp"
+#include "holdfast/pipeline/methods/scan_localizer.hpp"
 
 namespace holdfast::pipeline {
 

@@ -1,4 +1,4 @@
-#include "holdfast/pipeline/graph_localizer.hpp"
+#include "holdfast/pipeline/methods/graph_localizer.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

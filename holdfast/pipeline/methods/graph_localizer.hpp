@@ -6,7 +6,7 @@
 #include "baselines/map_filter.hpp"
 #include "holdfast/estimator/fixed_lag_smoother.hpp"
 #include "holdfast/filter/scan_match.hpp"
-#include "holdfast/pipeline/scan_localizer.hpp"
+#include "holdfast/pipeline/methods/scan_localizer.hpp"
 
 namespace holdfast::pipeline {
 
