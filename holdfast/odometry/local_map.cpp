@@ -16,15 +16,16 @@ template std::size_t holdfast::registration::associate(const odometry::LocalMap&
 namespace holdfast::odometry {
 namespace {
 
-constexpr std::array<std::size_t, LocalMap::kLevels> kCapacity = {1U << 17, 1U << 16};
+constexpr std::array<std::size_t, LocalMap::kSizes> kCapacity = {1U << 17, 1U << 16, 1U << 15};
 constexpr std::size_t kSweepCells = 4096;  // looked at in one scan
 constexpr double kAnchorReachM = 32.0;     // from the robot; float is good to 4 micrometres there
 constexpr float kRangeOfHalfWeightM = 40;  // 0.5 mrad are as much as the noise of a range
 constexpr float kFirstFit = 6;
-constexpr float kGrowth = 1.25F;   // between fits
-constexpr float kFloorM = 0.003F;  // roughness that every wall has
-constexpr float kFanM = 0.25F;     // nearer to the LiDAR no plane passes
-constexpr float kFanSine = 0.04F;  // nor at a smaller angle to the rays
+constexpr float kGrowth = 1.25F;        // between fits
+constexpr float kFloorM = 0.003F;       // roughness that every wall has
+constexpr float kFanM = 0.25F;          // nearer to the LiDAR no plane passes
+constexpr float kFanSine = 0.04F;       // nor at a smaller angle to the rays
+constexpr float kAngleSigma = 0.0005F;  // error of the rotation, rad
 constexpr double kLeastRadiusM = 10.0;
 constexpr double kNearlyFull = 0.95, kRoomy = 0.7;
 
@@ -32,27 +33,27 @@ constexpr double kNearlyFull = 0.95, kRoomy = 0.7;
 
 LocalMap::LocalMap(const LocalMapConfig& config, double range_sigma_m)
     : config_(config), range_variance_(static_cast<float>(range_sigma_m * range_sigma_m)) {
-  for (std::size_t i = 0; i < levels_.size(); ++i) {
-    Level& level = levels_[i];
-    level.cell_m = static_cast<float>(config.cell_m) * static_cast<float>(1U << i);
-    level.cells_per_m = 1.0F / level.cell_m;
-    level.cells.resize(kCapacity[i]);
-    level.free.reserve(kCapacity[i]);
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    Layer& layer = layers_[i];
+    layer.cell_m = static_cast<float>(config.cell_m) * static_cast<float>(1U << i);
+    layer.cells_per_m = 1.0F / layer.cell_m;
+    layer.cells.resize(kCapacity[i]);
+    layer.free.reserve(kCapacity[i]);
   }
   clear();
 }
 
 void LocalMap::clear() {
-  for (Level& level : levels_) {
-    level.table.reset(level.cells.size());
-    level.free.clear();
-    for (std::size_t i = level.cells.size(); i-- > 0;) {
-      level.cells[i].in_use = false;
-      level.free.push_back(static_cast<std::uint32_t>(i));
+  for (Layer& layer : layers_) {
+    layer.table.reset(layer.cells.size());
+    layer.free.clear();
+    for (std::size_t i = layer.cells.size(); i-- > 0;) {
+      layer.cells[i].in_use = false;
+      layer.free.push_back(static_cast<std::uint32_t>(i));
     }
-    level.swept = 0;
-    level.radius_m = config_.radius_m;
-    level.anchor_cell.setZero();
+    layer.swept = 0;
+    layer.radius_m = config_.radius_m;
+    layer.anchor_cell.setZero();
   }
   anchor_.setZero();
 }
@@ -67,32 +68,32 @@ void LocalMap::insert(const std::vector<Eigen::Vector3f>& points, const SE3& T_o
   for (const Eigen::Vector3f& q : points) {
     const float weight = 1.0F / (1.0F + (q - lidar).squaredNorm() * kHalf);
     const Sighting seen{R * q + t, lidar_in_map, weight};
-    for (Level& level : levels_) add(level, seen);
+    for (Layer& layer : layers_) add(layer, seen);
   }
 }
 
-void LocalMap::add(Level& level, const Sighting& seen) {
-  const Eigen::Vector3i local = (seen.p * level.cells_per_m).array().floor().cast<int>();
-  const std::uint64_t key = cell_key(local + level.anchor_cell);
-  std::uint32_t at = level.table.find(key);
+void LocalMap::add(Layer& layer, const Sighting& seen) {
+  const Eigen::Vector3i local = (seen.p * layer.cells_per_m).array().floor().cast<int>();
+  const std::uint64_t key = cell_key(local + layer.anchor_cell);
+  std::uint32_t at = layer.table.find(key);
   if (at == CellTable::kNone) {
-    if (level.free.empty()) {
+    if (layer.free.empty()) {
       ++refused_;
       return;
     }
-    at = level.free.back();
-    level.free.pop_back();
-    level.table.insert(key, at);
-    level.cells[at] = Cell{};
-    level.cells[at].key = key;
-    level.cells[at].in_use = true;
-    level.cells[at].refit_at = kFirstFit;
+    at = layer.free.back();
+    layer.free.pop_back();
+    layer.table.insert(key, at);
+    layer.cells[at] = Cell{};
+    layer.cells[at].key = key;
+    layer.cells[at].in_use = true;
+    layer.cells[at].refit_at = kFirstFit;
   }
-  const Eigen::Vector3f centre = (local.cast<float>().array() + 0.5F) * level.cell_m;
-  add_to(level, level.cells[at], {seen.p - centre, seen.lidar - centre, seen.weight});
+  const Eigen::Vector3f centre = (local.cast<float>().array() + 0.5F) * layer.cell_m;
+  add_to(layer, layer.cells[at], {seen.p - centre, seen.lidar - centre, seen.weight});
 }
 
-void LocalMap::add_to(const Level& level, Cell& cell, const Sighting& seen) {
+void LocalMap::add_to(const Layer& layer, Cell& cell, const Sighting& seen) {
   if (cell.weight >= static_cast<float>(config_.full_weight)) return;
   // West's running moments: nothing cancels.
   const float sum = cell.weight + seen.weight;
@@ -108,87 +109,84 @@ void LocalMap::add_to(const Level& level, Cell& cell, const Sighting& seen) {
   cell.scatter[4] += w * d.y() * d.z();
   cell.scatter[5] += w * d.z() * d.z();
   cell.weight = sum;
-  if (sum >= cell.refit_at) fit(level, cell);
+  if (sum >= cell.refit_at) fit(layer, cell);
 }
 
-/// Points of one beam that bends round a corner lie in the plane in which the beam turns. It would
-/// travel with the LiDAR and hold it back; a wall is known from it by passing at a distance.
-bool LocalMap::is_fan(const Cell& cell, const Eigen::Vector3f& normal) const {
-  const Eigen::Vector3f ray = cell.mean - cell.seen_from;
-  const float past = std::abs(normal.dot(ray));
-  return past < kFanM || past < kFanSine * ray.norm();
-}
-
-void LocalMap::fit(const Level& level, Cell& cell) const {
+/// Points of one beam that bends round a corner, or runs along a wall with its noise, lie in the
+/// plane in which the beam turns. It would travel with the LiDAR and hold it back; a wall is known
+/// from it by passing the LiDAR at a distance.
+void LocalMap::fit(const Layer& layer, Cell& cell) const {
   cell.refit_at = kGrowth * cell.weight;
   const auto& s = cell.scatter;
   Eigen::Matrix3d scatter;
   scatter << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(scatter / cell.weight);
-  const Eigen::Vector3f variance = solver.eigenvalues().cwiseMax(0.0).cast<float>();
+  const Eigen::Vector3f variance = solver.eigenvalues().cwiseMax(1e-8).cast<float>();
+  const Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>().normalized();
   const float n = cell.weight;
-  const float noise = range_variance_ + kFloorM * kFloorM;
+  // Noise across the plane as its points were seen.
+  const Eigen::Vector3f ray = cell.mean - cell.seen_from;
+  const float past = std::abs(normal.dot(ray));
+  const float noise = range_variance_ * past * past / ray.squaredNorm() + kFloorM * kFloorM +
+                      kAngleSigma * kAngleSigma * ray.squaredNorm();
   const auto slack = static_cast<float>(config_.noise_slack * config_.noise_slack);
-  const bool thin = variance[0] <= noise * slack * (1.0F + 2.0F * std::sqrt(2.0F / n));
-  cell.surface.more = 0;
-  cell.surface.support = static_cast<std::uint16_t>(std::min(n, 65535.0F));
-  if (!thin) {
-    cell.surface.kind = map::SurfaceKind::kClutter;
-    cell.known = true;
-    return;
-  }
+  cell.is_plane = false;
+  if (variance[0] > slack * noise * (1.0F + 2.0F * std::sqrt(2.0F / n))) return;
+  if (past < kFanM || past < kFanSine * ray.norm()) return;
   // Error of the plane over the cell: of its offset, and of its two tilts at a typical lever.
-  const float scale = std::max(variance[0] * n / std::max(n - 3.0F, 1.0F), 0.25F * noise);
-  const float lever_sq = level.cell_m * level.cell_m / 12.0F;
-  const float tilts =
-      lever_sq / std::max(variance[1], 1e-8F) + lever_sq / std::max(variance[2], 1e-8F);
-  const float sigma = std::sqrt(scale / n * (1.0F + tilts));
-  cell.surface.kind = map::SurfaceKind::kPlane;
-  cell.surface.center = cell.mean;
-  cell.surface.normal = solver.eigenvectors().col(0).cast<float>().normalized();
-  cell.surface.sigma_m = sigma;
-  cell.known =
-      sigma < static_cast<float>(config_.plane_sigma_m) && !is_fan(cell, cell.surface.normal);
+  const float scale = std::max(variance[0], 0.5F * noise) / n;
+  const float tilt = scale / variance[1];
+  const float lever_sq = layer.cell_m * layer.cell_m / 12.0F;
+  const float sigma_sq = scale + lever_sq * (tilt + scale / variance[2]);
+  const auto most = static_cast<float>(config_.plane_sigma_m);
+  const auto most_tilt = static_cast<float>(config_.tilt_sigma_rad);
+  cell.is_plane = sigma_sq < most * most && tilt < most_tilt * most_tilt;
+  cell.surface = {cell.mean,
+                  normal,
+                  std::sqrt(sigma_sq),
+                  static_cast<std::uint16_t>(std::min(n, 65535.0F)),
+                  map::SurfaceKind::kPlane,
+                  0};
 }
 
 void LocalMap::set_anchor(const Eigen::Vector3d& p_odom) {
-  const Level& coarsest = levels_.back();
+  const Layer& coarsest = layers_.back();
   const double side = coarsest.cell_m;
   const Eigen::Vector3i cell = (p_odom / side).array().floor().cast<int>();
   anchor_ = cell.cast<double>() * side;
-  for (std::size_t i = 0; i < levels_.size(); ++i) {
-    levels_[i].anchor_cell = cell * (1 << (levels_.size() - 1 - i));
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    layers_[i].anchor_cell = cell * (1 << (layers_.size() - 1 - i));
   }
 }
 
 void LocalMap::follow(const Eigen::Vector3d& p_odom) {
   if ((p_odom - anchor_).norm() > kAnchorReachM) set_anchor(p_odom);
-  for (Level& level : levels_) forget_far(level, p_odom);
+  for (Layer& layer : layers_) forget_far(layer, p_odom);
 }
 
-void LocalMap::forget_far(Level& level, const Eigen::Vector3d& p_odom) {
-  const auto share = static_cast<double>(level.used()) / static_cast<double>(level.cells.size());
-  if (share > kNearlyFull) level.radius_m = std::max(kLeastRadiusM, 0.95 * level.radius_m);
-  if (share < kRoomy) level.radius_m = std::min(config_.radius_m, 1.02 * level.radius_m);
-  const double most = level.radius_m * level.radius_m;
+void LocalMap::forget_far(Layer& layer, const Eigen::Vector3d& p_odom) {
+  const auto share = static_cast<double>(layer.used()) / static_cast<double>(layer.cells.size());
+  if (share > kNearlyFull) layer.radius_m = std::max(kLeastRadiusM, 0.95 * layer.radius_m);
+  if (share < kRoomy) layer.radius_m = std::min(config_.radius_m, 1.02 * layer.radius_m);
+  const double most = layer.radius_m * layer.radius_m;
   for (std::size_t k = 0; k < kSweepCells; ++k) {
-    level.swept = level.swept + 1 < level.cells.size() ? level.swept + 1 : 0;
-    Cell& cell = level.cells[level.swept];
+    layer.swept = layer.swept + 1 < layer.cells.size() ? layer.swept + 1 : 0;
+    Cell& cell = layer.cells[layer.swept];
     if (!cell.in_use) continue;
-    const Eigen::Vector3d p = cell_of(cell.key).cast<double>() * static_cast<double>(level.cell_m);
+    const Eigen::Vector3d p = cell_of(cell.key).cast<double>() * static_cast<double>(layer.cell_m);
     if ((p - p_odom).squaredNorm() <= most) continue;
-    level.table.erase(cell.key);
+    layer.table.erase(cell.key);
     cell.in_use = false;
-    level.free.push_back(static_cast<std::uint32_t>(level.swept));
+    layer.free.push_back(static_cast<std::uint32_t>(layer.swept));
   }
 }
 
 std::size_t LocalMap::memory_bytes() const {
   std::size_t bytes = sizeof(*this);
-  for (const Level& level : levels_) {
-    bytes += level.table.memory_bytes() + level.cells.capacity() * sizeof(Cell) +
-             level.free.capacity() * sizeof(std::uint32_t);
+  for (const Layer& layer : layers_) {
+    bytes += layer.table.memory_bytes() + layer.cells.capacity() * sizeof(Cell) +
+             layer.free.capacity() * sizeof(std::uint32_t);
   }
   return bytes;
 }

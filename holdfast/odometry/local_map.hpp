@@ -15,18 +15,22 @@ struct LocalMapConfig {
   double radius_m = 80.0;
   double noise_slack = 1.2;
   double plane_sigma_m = 0.02;
+  double tilt_sigma_rad = 0.05;
   int full_weight = 200;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("cell_m", self.cell_m,
-          FieldDoc{"side of a cell of the local map; the coarser level has twice that", 0.05, 5.0});
+          FieldDoc{"side of the smallest cells of the local map; the others have twice and four "
+                   "times that",
+                   0.05, 5.0});
     visit("radius_m", self.radius_m, FieldDoc{"cells farther away are forgotten", 10.0, 300.0});
     visit("noise_slack", self.noise_slack,
           FieldDoc{"thickness of a plane, by the noise of a range, above which it is none", 1.0,
                    10.0});
     visit("plane_sigma_m", self.plane_sigma_m,
           FieldDoc{"standard error up to which a plane is worth being matched", 1e-3, 1.0});
+    visit("tilt_sigma_rad", self.tilt_sigma_rad, FieldDoc{"and of its normal", 1e-3, 1.0});
     visit("full_weight", self.full_weight,
           FieldDoc{"points after which a cell is left as it is, so that the map does not follow "
                    "the odometry's own errors",
@@ -38,12 +42,15 @@ struct LocalMapConfig {
 /// own scans. Each cell keeps running moments of its points; its plane is fitted anew when they
 /// have grown by a share. Memory is fixed: cells out of reach are forgotten, at need nearer ones.
 ///
-/// A SurfaceMap: registration::associate and filter::update_with_scan take it like a prior map. A
-/// cell answers with a plane that its points determine to better than `plane_sigma_m`, with clutter
-/// where its points are no plane, and with nothing while they are too few or on a line.
+/// Cells come in three sizes. A large plane is known far better than a small one, above all its
+/// tilt: tilts that follow the noise hold the robot where it saw them. So the largest cell that is
+/// one plane answers, and the small ones serve where surfaces meet. A cell is no plane while its
+/// points are too few or on a line, and where they are thicker than the noise of ranges explains.
+///
+/// A SurfaceMap: registration::associate and filter::update_with_scan take it like a prior map.
 class LocalMap {
  public:
-  static constexpr int kLevels = 2;
+  static constexpr std::size_t kSizes = 3;  ///< of cells, each twice the one before
 
   /// `range_sigma_m`: noise of the LiDAR along the ray.
   LocalMap(const LocalMapConfig& config, double range_sigma_m);
@@ -52,14 +59,18 @@ class LocalMap {
     const map::Surface* surface = nullptr;
     Eigen::Vector3f corner = Eigen::Vector3f::Zero();  ///< centre of the cell, from the anchor
   };
-  /// The surface of the cell that holds `p` (relative to the anchor, metres).
+  /// Level 0: the plane of the largest cell around `p` (relative to the anchor, metres) that is
+  /// one. Level 1: that of the largest cells alone, however far off its plane `p` may be.
   Hit find(int level, const Eigen::Vector3f& p) const {
-    if (level >= kLevels) return {};
-    const Level& l = levels_[static_cast<std::size_t>(level)];
-    const Eigen::Vector3i cell = (p * l.cells_per_m).array().floor().cast<int>();
-    const std::uint32_t at = l.table.find(cell_key(cell + l.anchor_cell));
-    if (at == CellTable::kNone || !l.cells[at].known) return {};
-    return {&l.cells[at].surface, (cell.cast<float>().array() + 0.5F) * l.cell_m};
+    const std::size_t last = level == 0 ? 0 : kSizes - 1;
+    for (std::size_t i = kSizes; i-- > last;) {
+      const Layer& layer = layers_[i];
+      const Eigen::Vector3i cell = (p * layer.cells_per_m).array().floor().cast<int>();
+      const std::uint32_t at = layer.table.find(cell_key(cell + layer.anchor_cell));
+      if (at == CellTable::kNone || !layer.cells[at].is_plane) continue;
+      return {&layer.cells[at].surface, (cell.cast<float>().array() + 0.5F) * layer.cell_m};
+    }
+    return {};
   }
 
   /// A place near the robot in the odometry's frame; positions count from it in float.
@@ -76,7 +87,8 @@ class LocalMap {
 
   void clear();
 
-  std::size_t cells(int level) const { return levels_[static_cast<std::size_t>(level)].used(); }
+  /// Cells in use of the size `i`.
+  std::size_t cells(std::size_t i) const { return layers_[i].used(); }
   /// Points that found no room; 0 unless the surroundings are far larger than the map was made for.
   std::uint64_t refused() const { return refused_; }
   std::size_t memory_bytes() const;
@@ -92,10 +104,10 @@ class LocalMap {
     float weight = 0;
     float refit_at = 0;  ///< weight from which on the plane is fitted anew
     std::uint64_t key = 0;
-    bool known = false;  ///< surface holds a plane or clutter
+    bool is_plane = false;
     bool in_use = false;
   };
-  struct Level {
+  struct Layer {
     float cell_m = 0, cells_per_m = 0;
     Eigen::Vector3i anchor_cell = Eigen::Vector3i::Zero();
     CellTable table;
@@ -112,16 +124,15 @@ class LocalMap {
     Eigen::Vector3f p, lidar;
     float weight;
   };
-  void add(Level& level, const Sighting& seen);
-  void add_to(const Level& level, Cell& cell, const Sighting& seen);
-  bool is_fan(const Cell& cell, const Eigen::Vector3f& normal) const;
-  void fit(const Level& level, Cell& cell) const;
-  void forget_far(Level& level, const Eigen::Vector3d& p_odom);
+  void add(Layer& layer, const Sighting& seen);
+  void add_to(const Layer& layer, Cell& cell, const Sighting& seen);
+  void fit(const Layer& layer, Cell& cell) const;
+  void forget_far(Layer& layer, const Eigen::Vector3d& p_odom);
   void set_anchor(const Eigen::Vector3d& p_odom);
 
   LocalMapConfig config_;
   float range_variance_;
-  std::array<Level, kLevels> levels_;
+  std::array<Layer, kSizes> layers_;
   Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
   std::uint64_t refused_ = 0;
 };

@@ -23,6 +23,7 @@ constexpr double kAccelBiasJump = 0.3;  // m/s^2, what a bias may jump by
 constexpr double kGyroBiasJump = 0.03;  // rad/s
 constexpr double kFewOfUsual = 0.6;     // share of inliers, by the usual one, that is few
 constexpr int kContradictions = 3;      // scans in a row until the odometry counts as broken
+constexpr double kFitsBetter = 1.02;
 constexpr double kShareMemory = 0.05;
 constexpr std::size_t kEnoughPoints = 300;  // to contradict anything
 constexpr double kLongestFirstWayM = 3.0;   // between the first two scans
@@ -63,6 +64,7 @@ filter::UpdateOptions Odometry::options() const {
   o.association.gate_m = static_cast<float>(setup_.odometry.gate_m);
   o.association.range_sigma_m = static_cast<float>(setup_.range_sigma_m);
   o.association.surface_sigma_m = static_cast<float>(setup_.odometry.surface_sigma_m);
+  o.association.coarser_if_none = false;
   o.robust_scale = setup_.odometry.robust_scale;
   o.map_sigma_m = setup_.odometry.common_sigma_m;
   o.map_sigma_rad = 0.1 * o.map_sigma_m;  // its lever arm is 10 m
@@ -268,7 +270,8 @@ UpdateResult Odometry::release_biases(const FilterState& before, const UpdateRes
   predict(report.step.pose_time, report);
   clock.book(Stage::kPredict);
   const UpdateResult released = correct(clock);
-  if (released.usable && released.equations.weight > update.equations.weight) return released;
+  if (released.usable && released.equations.weight > kFitsBetter * update.equations.weight)
+    return released;
   state_ = held;
   return update;
 }
