@@ -14,6 +14,7 @@ constexpr TimeNs kTimeToSettle = kSecond / 4;
 constexpr TimeNs kImuMemory = 2 * kSecond;
 constexpr double kAccelBiasJump = 0.3;         // m/s^2, what a bias may jump by
 constexpr double kGyroBiasJump = 0.03;         // rad/s
+constexpr double kClearlyMore = 1.02;
 constexpr double kSkewToldM = 0.005;           // skew that is worth being estimated
 constexpr double kCoarseFromM = 0.1;           // uncertainty from which coarse planes are asked
 constexpr float kCoarseSurfaceSigmaM = 0.05F;  // while coarse planes are matched
@@ -120,7 +121,8 @@ void MapFilter::choose_start(StageClock& clock, StepReport& report) {
     state_ = start.state;
     predict(report.pose_time, report);
     const UpdateResult update = correct(clock);
-    if (!update.usable || update.equations.weight <= best_weight) continue;
+    // The slow start comes first, and where the scans cannot tell it is the likelier one.
+    if (!update.usable || update.equations.weight <= kClearlyMore * best_weight) continue;
     best_weight = update.equations.weight;
     best = start.state;
   }

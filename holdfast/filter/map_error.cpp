@@ -1,6 +1,7 @@
 #include "holdfast/filter/map_error.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace holdfast::filter {
 
@@ -13,7 +14,7 @@ void marginalise(const MapError& error, registration::NormalEquations& e) {
   const auto add = [&S](int block, double sigma) {
     S.diagonal().segment<3>(block).array() += 1.0 / (sigma * sigma);
   };
-  add(kPosition, error.position_m);
+  S.block<3, 3>(kPosition, kPosition) += error.position.inverse();
   add(kRotation, error.rotation_rad);
   add(kVelocity, error.velocity_m_s);
   const Eigen::LDLT<registration::Matrix9d> solver(S);

@@ -5,10 +5,10 @@
 namespace holdfast::filter {
 
 /// The prior map's own error as a scan feels it: common to all of its points, and so not averaged
-/// out by their number. Standard deviations of a pose offset, and of its drift from the first to
-/// the last point, which looks like a velocity.
+/// out by their number. Covariance of a position offset, standard deviations of a rotation and of
+/// the offset's drift from the first to the last point, which looks like a velocity.
 struct MapError {
-  double position_m = 0.001;
+  Eigen::Matrix3d position = 1e-6 * Eigen::Matrix3d::Identity();  ///< covariance, m^2, map frame
   double rotation_rad = 0.0001;
   double velocity_m_s = 0.02;
 };

@@ -67,7 +67,8 @@ const NormalEquations& ScanMatch::linearise(const MatchState& x) {
   // The points still stand where the velocity of the last deskewing put them.
   softened_.g += raw_.H.middleCols<3>(kVelocity) * (x.v_map - deskewed_.v_map);
   if (!options_.velocity_from_skew) fix_velocity(softened_);
-  marginalise(map_error(options_, to_seconds(scan_.scan->end_time - scan_.scan->stamp)), softened_);
+  const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
+  marginalise(map_error(options_, span, raw_), softened_);
   book(Stage::kSolve);
   return softened_;
 }

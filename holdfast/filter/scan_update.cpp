@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "holdfast/registration/degeneracy.hpp"
+
 namespace holdfast::filter {
 namespace {
 
@@ -127,7 +129,7 @@ class Iteration {
     softened.g += e.H.middleCols<3>(kVelocity) * (state_.v_map - deskewed_.v_map);
     if (!options_.velocity_from_skew) fix_velocity(softened);
     const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
-    marginalise(map_error(options_, span), softened);
+    marginalise(map_error(options_, span, e), softened);
     const Vector15d difference = state_.minus(prior_);
     const Matrix15d J = chart_jacobian(difference);
     Matrix15d A = J.transpose() * prior_information_ * J;
@@ -168,6 +170,12 @@ class Iteration {
 };
 
 }  // namespace
+
+MapError map_error(const UpdateOptions& options, double span_s, const NormalEquations& equations) {
+  const double variance = options.map_sigma_m * options.map_sigma_m;
+  return {registration::feigned_offset(equations) + variance * Eigen::Matrix3d::Identity(),
+          options.map_sigma_rad, 2.0 * options.map_sigma_m / std::max(span_s, 1e-3)};
+}
 
 UpdateResult update_with_scan(const ScanPairing& map, const SelectedScan& scan,
                               const Eigen::Vector3d& gravity, const UpdateOptions& options,

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "holdfast/core/parallel.hpp"
@@ -33,12 +32,10 @@ struct UpdateOptions {
   bool velocity_from_skew = false;
 };
 
-/// The map's own error in a scan that lasts `span_s`: over its time it may change by as much as it
-/// is.
-inline MapError map_error(const UpdateOptions& options, double span_s) {
-  return {options.map_sigma_m, options.map_sigma_rad,
-          2.0 * options.map_sigma_m / std::max(span_s, 1e-3)};
-}
+/// The map's own error in a scan that lasts `span_s` and has these equations: over its time it may
+/// change by as much as it is, and part of the information may be feigned.
+MapError map_error(const UpdateOptions& options, double span_s,
+                   const registration::NormalEquations& equations);
 
 /// What an update found.
 struct UpdateResult {

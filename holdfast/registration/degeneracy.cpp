@@ -1,6 +1,7 @@
 #include "holdfast/registration/degeneracy.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 namespace holdfast::registration {
 namespace {
@@ -30,6 +31,21 @@ Matrix3d position_information(const Matrix9d& H) {
   const Matrix3d pr = H.block<3, 3>(kPosition, kRotation);
   const Matrix3d rr = H.block<3, 3>(kRotation, kRotation);
   return H.block<3, 3>(kPosition, kPosition) - pr * pseudo_inverse(rr) * pr.transpose();
+}
+
+Matrix3d feigned_offset(const NormalEquations& equations) {
+  constexpr double kNowhere = 100.0;  // m^2, where all of the information is feigned
+  const Matrix3d information = position_information(equations.H);
+  const double by_normals = kNormalSigma * kNormalSigma * information.trace();
+  const Solver solver(information);
+  Eigen::Vector3d variance;
+  for (int i = 0; i < 3; ++i) {
+    const double seeming = std::max(solver.eigenvalues()[i], 1e-9);
+    const Eigen::Vector3d d = solver.eigenvectors().col(i);
+    const double real = seeming - by_normals - d.dot(equations.doubt * d);
+    variance[i] = real > 1.0 / kNowhere ? std::min(1.0 / real - 1.0 / seeming, kNowhere) : kNowhere;
+  }
+  return solver.eigenvectors() * variance.asDiagonal() * solver.eigenvectors().transpose();
 }
 
 std::vector<Eigen::Vector3d> weak_directions(const Matrix9d& H, double sigma_m) {

@@ -16,6 +16,13 @@ namespace holdfast::registration {
 /// residual depends on them. Velocity is taken as known.
 Eigen::Matrix3d position_information(const Matrix9d& H);
 
+/// Covariance (m^2, map frame) of a position offset that takes away the information which the scan
+/// only seems to hold; marginalising an offset with this covariance leaves what is real. Information
+/// is feigned by normals, which are off by some milliradians and give every direction a share of the
+/// information of the others, and by pairs that do not agree (NormalEquations::doubt): a few points
+/// of a wall near a small face across it would otherwise hold a robot in a bare tunnel.
+Eigen::Matrix3d feigned_offset(const NormalEquations& equations);
+
 /// Unit vectors of the map frame, the weakest first, along which one scan determines the position
 /// worse than `sigma_m`, the rotation being free. Normals of a map are off by some milliradians,
 /// which gives every direction a share of the information of the others that the scene does not
