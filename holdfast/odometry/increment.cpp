@@ -8,8 +8,10 @@ namespace {
 using filter::FilterState;
 using filter::Matrix15d;
 
-/// Transition of the errors from `a` to `b`, first order in the biases.
-Matrix15d transition(const FilterState& a, const FilterState& b, const Eigen::Vector3d& gravity) {
+}  // namespace
+
+Matrix15d error_transition(const FilterState& a, const FilterState& b,
+                           const Eigen::Vector3d& gravity) {
   const double dt = to_seconds(b.t - a.t);
   const Eigen::Matrix3d R = a.T_map_body.rotation.toRotationMatrix();
   const Eigen::Matrix3d turn =
@@ -30,13 +32,11 @@ Matrix15d transition(const FilterState& a, const FilterState& b, const Eigen::Ve
   return F;
 }
 
-}  // namespace
-
 Increment increment_between(const FilterState& before, const FilterState& predicted,
                             const FilterState& after, const Eigen::Vector3d& gravity) {
   Increment increment;
   increment.T_prev_cur = before.T_map_body.inverse() * after.T_map_body;
-  const Matrix15d F = transition(before, predicted, gravity);
+  const Matrix15d F = error_transition(before, predicted, gravity);
   // Cov(after, before) = (I - K H) F P_before, where I - K H = P_after P_predicted^-1.
   const Matrix15d cross = after.P * predicted.P.ldlt().solve(F * before.P);
   const Eigen::Matrix3d R = before.T_map_body.rotation.toRotationMatrix();

@@ -13,6 +13,11 @@ struct Increment {
   Matrix6d covariance = Matrix6d::Identity();
 };
 
+/// Transition of the state's errors over one scan, from `from` to `to` (propagated), to first order
+/// in its length.
+filter::Matrix15d error_transition(const filter::FilterState& from, const filter::FilterState& to,
+                                   const Eigen::Vector3d& gravity);
+
 /// The increment from `before`, by way of `predicted` (propagated from `before`, not yet corrected)
 /// to `after` (corrected). Errors of both ends are correlated: what the scan did not correct, the
 /// IMU carried over from before; the correlation follows from the gain of the correction and from

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "holdfast/odometry/local_pairing.hpp"
 #include "holdfast/registration/degeneracy.hpp"
 
 namespace holdfast::odometry {
@@ -25,9 +26,10 @@ constexpr double kFewOfUsual = 0.6;     // share of inliers, by the usual one, t
 constexpr int kContradictions = 3;      // scans in a row until the odometry counts as broken
 constexpr double kFitsBetter = 1.02;
 constexpr double kShareMemory = 0.05;
-constexpr std::size_t kEnoughPoints = 300;  // to contradict anything
-constexpr double kLongestFirstWayM = 3.0;   // between the first two scans
-constexpr double kFirstSpeedSigma = 0.5;    // m/s, of the way between two scans
+constexpr std::size_t kEnoughPoints = 300;    // to contradict anything
+constexpr double kLongestFirstWayM = 3.0;     // between the first two scans
+constexpr double kAccelerationAtStart = 0.3;  // m/s^2, that levelling takes for gravity
+constexpr double kFirstSpeedSigma = 0.5;      // m/s, of the way between two scans
 
 double largest_sigma(const Eigen::Matrix3d& P) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(P, Eigen::EigenvaluesOnly);
@@ -51,10 +53,7 @@ void set_sigma(FilterState& state, int offset, double sigma) {
 }  // namespace
 
 Odometry::Odometry(const Setup& setup)
-    : setup_(setup),
-      gravity_(0, 0, -setup.gravity_m_s2),
-      map_(setup.map, setup.range_sigma_m),
-      pool_(setup.threads) {
+    : setup_(setup), map_(setup.map, setup.range_sigma_m), pool_(setup.threads) {
   setup_.selection = selection_of(setup);
   scan_.T_body_lidar = setup.T_body_lidar;
 }
@@ -124,8 +123,10 @@ bool Odometry::prepare(const Scan& scan, StageClock& clock, OdometryReport& repo
 void Odometry::level(const Scan& scan) {
   imu_.segment(scan.end_time - kImuMemory, scan.end_time, segment_);
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  double count = 0;
   for (const ImuSample& s : segment_.samples) {
-    if (s.t >= segment_.measured_begin) force += s.accel_m_s2;
+    if (s.t < segment_.measured_begin) continue;
+    force += (s.accel_m_s2 - force) / ++count;
   }
   const Eigen::Vector3d up = force.normalized();
   // x of `odom` is the body's x, seen from above.
@@ -138,13 +139,12 @@ void Odometry::level(const Scan& scan) {
   state_.t = scan.end_time;
   state_.T_map_body.rotation = Eigen::Quaterniond(R_odom_body).normalized();
   state_.P.setZero();
-  // The frame is where the robot stands; that gravity is not quite along its z is as if the
-  // accelerometer had a bias.
   set_sigma(state_, FilterState::kP, 1e-4);
   set_sigma(state_, FilterState::kR, 1e-5);
   set_sigma(state_, FilterState::kV, setup_.fastest_m_s);
   set_sigma(state_, FilterState::kBa, 0.1);
   set_sigma(state_, FilterState::kBg, 0.02);
+  gravity_.begin(force, kAccelerationAtStart, setup_.gravity_m_s2, state_);
 }
 
 /// A local map begins with the first scan that has returns.
@@ -166,6 +166,7 @@ void Odometry::wait_for_returns(OdometryReport& report) {
   set_sigma(state_, FilterState::kR, 1e-5);
   state_.P.block<3, 3>(FilterState::kV, FilterState::kV) = P_v;
   state_.set_biases(biases);
+  gravity_.forget_pose();
   first_.keep(scan_, state_);
   last_surprise_ = report.step.pose_time;
   phase_ = Phase::kFirstScan;
@@ -177,7 +178,7 @@ void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
   const double dt = to_seconds(report.step.pose_time - state_.t);
   const bool found = !scan_.selected.empty() && dt * setup_.fastest_m_s < kLongestFirstWayM &&
                      find_first_motion(first_, scan_, report.step.pose_time, setup_.fastest_m_s,
-                                       gravity_, options(), pool_, map_, work_);
+                                       gravity_.value(), options(), pool_, map_, work_);
   clock.book(Stage::kStart);
   if (!found) {
     predict(report.step.pose_time, report);
@@ -186,19 +187,19 @@ void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
   }
   state_ = first_.state;
   set_sigma(state_, FilterState::kV, kFirstSpeedSigma);
-  const FilterState before = state_;
+  Passage passage{state_, state_, gravity_};
   predict(report.step.pose_time, report);
-  const FilterState predicted = state_;
+  passage.predicted = state_;
   UpdateResult update = correct(clock);
   if (update.usable) {
     // Once more with the better velocity, which moved the points of both scans.
-    first_.state.v_map += state_.v_map - predicted.v_map;
-    begin_map(first_, gravity_, map_, work_);
-    update = correct_at(0, predicted, clock);
+    first_.state.v_map += state_.v_map - passage.predicted.v_map;
+    begin_map(first_, gravity_.value(), map_, work_);
+    update = correct_at(0, passage.predicted, clock);
   }
   phase_ = Phase::kRunning;
-  last_keyframe_ = before.T_map_body;
-  accept(update, before, predicted, clock, report);
+  last_keyframe_ = passage.before.T_map_body;
+  accept(update, passage, clock, report);
 }
 
 bool Odometry::predict(TimeNs to, OdometryReport& report) {
@@ -208,9 +209,12 @@ bool Odometry::predict(TimeNs to, OdometryReport& report) {
   if (holding && !biases_before_hold_) biases_before_hold_ = state_.biases();
   if (!holding && biases_before_hold_) {
     state_.set_biases(*biases_before_hold_);
+    gravity_.forget_biases();
     biases_before_hold_.reset();
   }
-  propagate(state_, segment_, gravity_, setup_.imu);
+  const FilterState before = state_;
+  propagate(state_, segment_, gravity_.value(), setup_.imu);
+  gravity_.predict(before, state_);
   return true;
 }
 
@@ -225,7 +229,8 @@ UpdateResult Odometry::correct_at(int level, const FilterState& predicted, Stage
     how.association.gate_m = std::max(how.association.gate_m, reach);
     how.association.surface_sigma_m = kCoarseSurfaceSigmaM;
   }
-  return update_with_scan(map_, scan_, gravity_, how, pool_, work_, predicted, state_, &clock);
+  return update_with_scan(LocalPairing(map_, setup_.odometry.parallel_sine), scan_,
+                          gravity_.value(), how, pool_, work_, predicted, state_, &clock);
 }
 
 UpdateResult Odometry::correct(StageClock& clock) {
@@ -260,36 +265,42 @@ bool Odometry::contradicted(const UpdateResult& update, double surprise) const {
 
 /// A bias may have jumped, or the IMU may be worse than its configured noise: does the scan fit
 /// better if the biases are let go? If not, all stays as it was.
-UpdateResult Odometry::release_biases(const FilterState& before, const UpdateResult& update,
+UpdateResult Odometry::release_biases(const UpdateResult& update, Passage& passage,
                                       StageClock& clock, OdometryReport& report) {
   const FilterState held = state_;
+  const GravityEstimate held_gravity = gravity_;
   last_surprise_ = state_.t;
-  state_ = before;
+  state_ = passage.before;
+  gravity_ = passage.gravity_before;
   state_.P.diagonal().segment<3>(FilterState::kBa).array() += kAccelBiasJump * kAccelBiasJump;
   state_.P.diagonal().segment<3>(FilterState::kBg).array() += kGyroBiasJump * kGyroBiasJump;
   predict(report.step.pose_time, report);
+  const FilterState predicted = state_;
   clock.book(Stage::kPredict);
   const UpdateResult released = correct(clock);
-  if (released.usable && released.equations.weight > kFitsBetter * update.equations.weight)
+  if (released.usable && released.equations.weight > kFitsBetter * update.equations.weight) {
+    passage.predicted = predicted;
     return released;
+  }
   state_ = held;
+  gravity_ = held_gravity;
   return update;
 }
 
 void Odometry::track(StageClock& clock, OdometryReport& report) {
-  const FilterState before = state_;
+  Passage passage{state_, state_, gravity_};
   predict(report.step.pose_time, report);
-  const FilterState predicted = state_;
+  passage.predicted = state_;
   clock.book(Stage::kPredict);
-  const double growth = largest_sigma(predicted.P, FilterState::kP) - sigma_at_scan_m_;
+  const double growth = largest_sigma(state_.P, FilterState::kP) - sigma_at_scan_m_;
   if (growth > setup_.odometry.lost_sigma_m) {
     begin_epoch("too long without a scan that fits", report);
     return;
   }
   UpdateResult update = correct(clock);
-  double surprised = update.usable ? surprise(predicted) : 0.0;
+  const double surprised = update.usable ? surprise(passage.predicted) : 0.0;
   if (contradicted(update, surprised)) {
-    state_ = predicted;
+    state_ = passage.predicted;
     update.usable = false;
     if (++contradictions_ >= kContradictions) {
       begin_epoch("scans contradict the local map and the prediction", report);
@@ -298,17 +309,18 @@ void Odometry::track(StageClock& clock, OdometryReport& report) {
   } else {
     contradictions_ = 0;
     if (surprised > kSurprise && state_.t >= last_surprise_ + kSettle) {
-      update = release_biases(before, update, clock, report);
+      update = release_biases(update, passage, clock, report);
     }
   }
-  accept(update, before, predicted, clock, report);
+  accept(update, passage, clock, report);
 }
 
 /// What becomes of a scan that was matched, or could not be.
-void Odometry::accept(const UpdateResult& update, const FilterState& before,
-                      const FilterState& predicted, StageClock& clock, OdometryReport& report) {
+void Odometry::accept(const UpdateResult& update, const Passage& passage, StageClock& clock,
+                      OdometryReport& report) {
   report.corrected = update.usable;
-  add_increment(before, predicted, report);
+  if (update.usable) gravity_.correct(passage.predicted, state_);
+  add_increment(passage, report);
   describe(update, report);
   map_.follow(state_.T_map_body.translation);
   if (!update.usable) {
@@ -347,9 +359,9 @@ void Odometry::begin_epoch(const char* reason, OdometryReport& report) {
   wait_for_returns(report);
 }
 
-void Odometry::add_increment(const FilterState& before, const FilterState& predicted,
-                             OdometryReport& report) {
-  Increment increment = increment_between(before, predicted, state_, gravity_);
+void Odometry::add_increment(const Passage& passage, OdometryReport& report) {
+  const FilterState& before = passage.before;
+  Increment increment = increment_between(before, passage.predicted, state_, gravity_.value());
   increment.covariance *= setup_.odometry.inflation;
   const SE3 T_epoch{before.T_map_body.rotation, Eigen::Vector3d::Zero()};
   drift_ = compose_covariance(T_epoch, drift_, increment);

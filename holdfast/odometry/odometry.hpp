@@ -4,6 +4,7 @@
 
 #include "holdfast/core/step_report.hpp"
 #include "holdfast/odometry/first_motion.hpp"
+#include "holdfast/odometry/gravity_estimate.hpp"
 #include "holdfast/odometry/increment.hpp"
 #include "holdfast/odometry/odometry_config.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
@@ -57,11 +58,20 @@ class Odometry {
   OdometryReport add_scan(const Scan& scan);
 
   const filter::FilterState& state() const { return state_; }
+  /// In the odometry's frame, m/s^2; along -z but for the error of the first levelling.
+  const Eigen::Vector3d& gravity() const { return gravity_.value(); }
   const LocalMap& map() const { return map_; }
   const preprocess::ImuBuffer& imu() const { return imu_; }
 
  private:
   enum class Phase { kNothing, kWaiting, kFirstScan, kRunning };
+
+  /// From one scan to the next: the state there, and carried here by the IMU.
+  struct Passage {
+    filter::FilterState before;
+    filter::FilterState predicted;
+    GravityEstimate gravity_before;
+  };
 
   void step(const Scan& scan, StageClock& clock, OdometryReport& report);
   bool prepare(const Scan& scan, StageClock& clock, OdometryReport& report);
@@ -73,22 +83,20 @@ class Odometry {
   filter::UpdateResult correct(StageClock& clock);
   filter::UpdateResult correct_at(int level, const filter::FilterState& predicted,
                                   StageClock& clock);
-  filter::UpdateResult release_biases(const filter::FilterState& before,
-                                      const filter::UpdateResult& update, StageClock& clock,
-                                      OdometryReport& report);
+  filter::UpdateResult release_biases(const filter::UpdateResult& update, Passage& passage,
+                                      StageClock& clock, OdometryReport& report);
   double surprise(const filter::FilterState& predicted) const;
   bool contradicted(const filter::UpdateResult& update, double surprise) const;
-  void accept(const filter::UpdateResult& update, const filter::FilterState& before,
-              const filter::FilterState& predicted, StageClock& clock, OdometryReport& report);
+  void accept(const filter::UpdateResult& update, const Passage& passage, StageClock& clock,
+              OdometryReport& report);
   void extend_map();
   void begin_epoch(const char* reason, OdometryReport& report);
-  void add_increment(const filter::FilterState& before, const filter::FilterState& predicted,
-                     OdometryReport& report);
+  void add_increment(const Passage& passage, OdometryReport& report);
   void describe(const filter::UpdateResult& update, OdometryReport& report) const;
   filter::UpdateOptions options() const;
 
   Setup setup_;
-  Eigen::Vector3d gravity_;
+  GravityEstimate gravity_;
   LocalMap map_;
   WorkerPool pool_;
   preprocess::ImuBuffer imu_;

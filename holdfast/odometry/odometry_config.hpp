@@ -12,6 +12,7 @@ struct OdometryConfig {
   double surface_sigma_m = 0.005;
   double robust_scale = 3.0;
   double gate_m = 0.3;
+  double parallel_sine = 0.3;
   double common_sigma_m = 0.0005;
   double min_inlier_share = 0.1;
   double weak_sigma_m = 0.05;
@@ -30,6 +31,10 @@ struct OdometryConfig {
     visit("robust_scale", self.robust_scale,
           FieldDoc{"residual, in sigmas, at which a point counts a quarter", 0.5, 100.0});
     visit("gate_m", self.gate_m, FieldDoc{"farther planes are no correspondence", 0.01, 5.0});
+    visit("parallel_sine", self.parallel_sine,
+          FieldDoc{"a surface whose normal has less than this along a direction that the scene "
+                   "hardly determines tells nothing along it",
+                   0.0, 1.0});
     visit("common_sigma_m", self.common_sigma_m,
           FieldDoc{"error that all points of a scan have in common", 1e-5, 1.0});
     visit("min_inlier_share", self.min_inlier_share,

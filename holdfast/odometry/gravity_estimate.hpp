@@ -1,0 +1,40 @@
+#pragma once
+
+#include "holdfast/filter/filter_state.hpp"
+
+namespace holdfast::odometry {
+
+/// Gravity in the odometry's frame, estimated beside the state. The local map fixes the rotation to
+/// where the frame began, so that an error of the first levelling stays: unlike a bias of the
+/// accelerometer it does not turn with the robot, and a filter without it never settles.
+///
+/// Three further unknowns of the same Kalman filter: since scans do not depend on gravity, their
+/// correction follows from that of the state by the covariance of the two.
+class GravityEstimate {
+ public:
+  /// From the mean force (m/s^2, body) over readings in which the robot accelerated by no more than
+  /// `acceleration_sigma`, a gravity of size `size` and the uncertainty of the accelerometer's bias
+  /// in `state`; corrects bias and covariance of the state by what the readings tell.
+  void begin(const Eigen::Vector3d& force, double acceleration_sigma, double size,
+             filter::FilterState& state);
+
+  const Eigen::Vector3d& value() const { return gravity_; }
+  Eigen::Vector3d sigma() const { return P_.diagonal().cwiseMax(0.0).cwiseSqrt(); }
+
+  /// After the state was propagated from `before` to `predicted`: adds to its covariance what the
+  /// uncertainty of gravity does.
+  void predict(const filter::FilterState& before, filter::FilterState& predicted);
+  /// After a scan has corrected `predicted` to `after`.
+  void correct(const filter::FilterState& predicted, const filter::FilterState& after);
+  /// Pose and velocity begin anew; what is known of gravity and biases stays.
+  void forget_pose();
+  /// The biases' covariance was replaced.
+  void forget_biases();
+
+ private:
+  Eigen::Vector3d gravity_ = Eigen::Vector3d(0, 0, -9.81);
+  Eigen::Matrix3d P_ = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 3, 15> cross_ = Eigen::Matrix<double, 3, 15>::Zero();
+};
+
+}  // namespace holdfast::odometry
