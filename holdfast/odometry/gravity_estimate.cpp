@@ -1,6 +1,7 @@
 #include "holdfast/odometry/gravity_estimate.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "holdfast/odometry/increment.hpp"
 
@@ -11,6 +12,7 @@ using filter::FilterState;
 using filter::Matrix15d;
 
 constexpr double kSizeSigma = 0.01;      // m/s^2, gravity over the Earth and heights
+constexpr double kWander = 1e-5;         // m/s^2/sqrt(s), against rounding
 constexpr double kDirectionSigma = 3.0;  // m/s^2, before the readings tell it
 
 }  // namespace
@@ -48,17 +50,23 @@ void GravityEstimate::predict(const FilterState& before, FilterState& predicted)
   G.middleRows<3>(FilterState::kV) = dt * Eigen::Matrix3d::Identity();
   const Eigen::Matrix<double, 3, 15> carried = cross_ * F.transpose();
   const Matrix15d mixed = G * carried;
-  predicted.P += mixed + mixed.transpose() + G * P_ * G.transpose();
+  predicted.P += F * before.P * F.transpose() + mixed + mixed.transpose() + G * P_ * G.transpose();
+  predicted.P = (0.5 * (predicted.P + predicted.P.transpose())).eval();
   cross_ = carried + P_ * G.transpose();
+  P_.diagonal().array() += kWander * kWander * dt;
 }
 
 void GravityEstimate::correct(const FilterState& predicted, const FilterState& after) {
   const Eigen::Matrix<double, 3, 15> gain =
       predicted.P.ldlt().solve(cross_.transpose()).transpose();
   gravity_ += gain * after.minus(predicted);
-  P_ -= gain * (predicted.P - after.P) * gain.transpose();
+  // What the state says nothing about, and what it does: a sum of squares, whatever the rounding.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> rest(P_ - gain * cross_.transpose());
+  const Eigen::Matrix3d& V = rest.eigenvectors();
+  P_ = V * rest.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose() +
+       gain * after.P * gain.transpose();
   P_ = (0.5 * (P_ + P_.transpose())).eval();
-  cross_ = (gain * after.P).eval();
+  cross_ = gain * after.P;
 }
 
 void GravityEstimate::forget_pose() { cross_.leftCols<9>().setZero(); }

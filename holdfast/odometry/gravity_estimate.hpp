@@ -21,8 +21,9 @@ class GravityEstimate {
   const Eigen::Vector3d& value() const { return gravity_; }
   Eigen::Vector3d sigma() const { return P_.diagonal().cwiseMax(0.0).cwiseSqrt(); }
 
-  /// After the state was propagated from `before` to `predicted`: adds to its covariance what the
-  /// uncertainty of gravity does.
+  /// After a state without covariance was propagated from `before` to `predicted`, so that P is
+  /// what noise added: adds what came of the covariance before and of the uncertainty of gravity.
+  /// One transition serves all of it, so that the covariance of state and gravity stays one.
   void predict(const filter::FilterState& before, filter::FilterState& predicted);
   /// After a scan has corrected `predicted` to `after`.
   void correct(const filter::FilterState& predicted, const filter::FilterState& after);

@@ -29,6 +29,9 @@ Matrix15d error_transition(const FilterState& a, const FilterState& b,
   F.block<3, 3>(FilterState::kR, FilterState::kBg) = -dt * Eigen::Matrix3d::Identity();
   F.block<3, 3>(FilterState::kV, FilterState::kR) = -so3::hat(dv) * R;
   F.block<3, 3>(FilterState::kV, FilterState::kBa) = -dt * R_middle;
+  // The rotation's error grows while the force acts.
+  F.block<3, 3>(FilterState::kV, FilterState::kBg) = 0.5 * dt * so3::hat(dv) * R_middle;
+  F.block<3, 3>(FilterState::kP, FilterState::kBg) = dt / 3.0 * so3::hat(dp) * R_middle;
   return F;
 }
 

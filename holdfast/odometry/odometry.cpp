@@ -213,6 +213,7 @@ bool Odometry::predict(TimeNs to, OdometryReport& report) {
     biases_before_hold_.reset();
   }
   const FilterState before = state_;
+  state_.P.setZero();
   propagate(state_, segment_, gravity_.value(), setup_.imu);
   gravity_.predict(before, state_);
   return true;
