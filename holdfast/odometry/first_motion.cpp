@@ -9,6 +9,8 @@ namespace {
 using filter::FilterState;
 
 constexpr double kStepM = 0.3;
+constexpr double kSearchSigmaM = 0.2;
+constexpr double kRestSigmaM = 0.003;
 constexpr std::size_t kSearchPoints = 1500;
 constexpr double kBetter = 1.02;      // so much more must agree for a faster motion
 constexpr double kLeastShare = 0.15;  // of the points that must agree
@@ -35,17 +37,27 @@ void set_sigma(FilterState& state, int offset, double sigma) {
 
 /// Where the second scan ends, as the gyroscope turns, displaced by `d` and standing still, so that
 /// the scan stays as skewed as the first one is.
-FilterState displaced(const FirstScan& first, const SE3& turned, const Eigen::Vector3d& d) {
+FilterState displaced(const FirstScan& first, const SE3& turned, const Eigen::Vector3d& d,
+                      double sigma_m) {
   FilterState state = first.state;
   state.T_map_body = {turned.rotation, first.state.T_map_body.translation + d};
   state.v_map.setZero();
   state.P.setZero();
-  set_sigma(state, FilterState::kP, 0.2);
+  set_sigma(state, FilterState::kP, sigma_m);
   set_sigma(state, FilterState::kR, 0.01);
   set_sigma(state, FilterState::kV, 1e-3);
   set_sigma(state, FilterState::kBa, 1e-3);
   set_sigma(state, FilterState::kBg, 1e-4);
   return state;
+}
+
+/// The pose after `dt` of turning at the mean rate of the readings.
+SE3 turned_by(const preprocess::ImuSegment& imu, double dt, const FilterState& from) {
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  for (const ImuSample& s : imu.samples) rate += s.gyro_rad_s - from.gyro_bias;
+  rate /= static_cast<double>(std::max<std::size_t>(imu.samples.size(), 1));
+  return {(from.T_map_body.rotation * so3::exp(dt * rate)).normalized(),
+          from.T_map_body.translation};
 }
 
 filter::SelectedScan thinned(const filter::SelectedScan& scan) {
@@ -85,40 +97,41 @@ void begin_map(const FirstScan& first, const Eigen::Vector3d& gravity, LocalMap&
   map.insert(work.points.points, s.T_map_body, first.selected.T_body_lidar.translation);
 }
 
-bool find_first_motion(FirstScan& first, const filter::SelectedScan& second, TimeNs second_end,
-                       double fastest_m_s, const Eigen::Vector3d& gravity,
-                       const filter::UpdateOptions& options, WorkerPool& pool, LocalMap& map,
-                       filter::UpdateWorkspace& work) {
+FirstMotion find_first_motion(FirstScan& first, const filter::SelectedScan& second,
+                              TimeNs second_end, double fastest_m_s, const Eigen::Vector3d& gravity,
+                              const filter::UpdateOptions& options, WorkerPool& pool, LocalMap& map,
+                              filter::UpdateWorkspace& work) {
   const double dt = to_seconds(second_end - first.state.t);
   const Eigen::Vector3d guess = dt * first.state.v_map;
   first.state.v_map.setZero();
   begin_map(first, gravity, map, work);
-  // The turn between the ends: the second scan's readings begin where the first one ends, or a
-  // little later; the gyroscope's mean rate fills the rest.
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
-  for (const ImuSample& s : second.imu.samples) rate += s.gyro_rad_s - first.state.gyro_bias;
-  rate /= static_cast<double>(std::max<std::size_t>(second.imu.samples.size(), 1));
-  const SE3 turned{(first.state.T_map_body.rotation * so3::exp(dt * rate)).normalized(),
-                   first.state.T_map_body.translation};
-  filter::UpdateOptions wide = options;
-  wide.max_iterations = 5;
+  const SE3 turned = turned_by(second.imu, dt, first.state);
+  filter::UpdateOptions few_steps = options;
+  few_steps.max_iterations = 5;
   const filter::SelectedScan few = thinned(second);
-  double best = kLeastShare * static_cast<double>(few.selected.size());
-  bool found = false;
-  Eigen::Vector3d way = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& d : displacements(guess, dt * fastest_m_s)) {
-    const FilterState prior = displaced(first, turned, d);
+  Eigen::Vector3d way;
+  const auto agreeing = [&](const Eigen::Vector3d& d, double sigma_m) {
+    const FilterState prior = displaced(first, turned, d, sigma_m);
     FilterState state = prior;
     const auto result =
-        filter::update_with_scan(map, few, gravity, wide, pool, work, prior, state, nullptr);
-    if (!result.usable || result.equations.weight < kBetter * best) continue;
-    best = result.equations.weight;
-    found = true;
+        filter::update_with_scan(map, few, gravity, few_steps, pool, work, prior, state, nullptr);
     way = state.T_map_body.translation - first.state.T_map_body.translation;
+    return result.usable ? result.equations.weight : 0.0;
+  };
+  const double resting = agreeing(Eigen::Vector3d::Zero(), kRestSigmaM);
+  double best = std::max(resting, kLeastShare * static_cast<double>(few.selected.size()));
+  FirstMotion motion = resting < best ? FirstMotion::kNone : FirstMotion::kRests;
+  Eigen::Vector3d best_way = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& d : displacements(guess, dt * fastest_m_s)) {
+    const double weight = agreeing(d, kSearchSigmaM);
+    if (weight < kBetter * best) continue;
+    best = weight;
+    best_way = way;
+    motion = FirstMotion::kMoves;
   }
-  first.state.v_map = way / dt;
+  first.state.v_map = best_way / dt;
   begin_map(first, gravity, map, work);
-  return found;
+  return motion;
 }
 
 }  // namespace holdfast::odometry

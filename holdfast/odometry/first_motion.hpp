@@ -20,14 +20,20 @@ struct FirstScan {
 void begin_map(const FirstScan& first, const Eigen::Vector3d& gravity, LocalMap& map,
                filter::UpdateWorkspace& work);
 
+enum class FirstMotion {
+  kNone,   ///< the scans have too little in common
+  kRests,  ///< nothing speaks against a robot that stands still
+  kMoves,
+};
+
 /// Velocity of the robot at the end of the first scan, in the odometry's frame, from the way to the
-/// second one. Neither scan can be deskewed without it, but both are skewed alike while the robot
-/// goes on as it does: so the second is matched to the first with both left skewed, from a pattern
-/// of displacements up to `fastest_m_s`, and the slowest motion stands that no other explains
-/// better. Leaves a map of that motion. False: the scans have too little in common.
-bool find_first_motion(FirstScan& first, const filter::SelectedScan& second, TimeNs second_end,
-                       double fastest_m_s, const Eigen::Vector3d& gravity,
-                       const filter::UpdateOptions& options, WorkerPool& pool, LocalMap& map,
-                       filter::UpdateWorkspace& work);
+/// second one; set in `first.state`. Neither scan can be deskewed without it, but both are skewed
+/// alike while the robot goes on as it does: so the second is matched to the first with both left
+/// skewed, from a pattern of displacements up to `fastest_m_s`, and the slowest motion stands that
+/// no other explains better; rest before all. Leaves a map of that motion.
+FirstMotion find_first_motion(FirstScan& first, const filter::SelectedScan& second,
+                              TimeNs second_end, double fastest_m_s, const Eigen::Vector3d& gravity,
+                              const filter::UpdateOptions& options, WorkerPool& pool, LocalMap& map,
+                              filter::UpdateWorkspace& work);
 
 }  // namespace holdfast::odometry

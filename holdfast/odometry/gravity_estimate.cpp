@@ -42,7 +42,7 @@ void GravityEstimate::begin(const Eigen::Vector3d& force, double acceleration_si
   cross_.middleCols<3>(FilterState::kBa) = P.bottomLeftCorner<3, 3>();
 }
 
-void GravityEstimate::predict(const FilterState& before, FilterState& predicted) {
+Matrix15d GravityEstimate::predict(const FilterState& before, FilterState& predicted) {
   const double dt = to_seconds(predicted.t - before.t);
   const Matrix15d F = error_transition(before, predicted, gravity_);
   Eigen::Matrix<double, 15, 3> G = Eigen::Matrix<double, 15, 3>::Zero();
@@ -52,8 +52,10 @@ void GravityEstimate::predict(const FilterState& before, FilterState& predicted)
   const Matrix15d mixed = G * carried;
   predicted.P += F * before.P * F.transpose() + mixed + mixed.transpose() + G * P_ * G.transpose();
   predicted.P = (0.5 * (predicted.P + predicted.P.transpose())).eval();
+  const Matrix15d with_before = F * before.P + G * cross_;
   cross_ = carried + P_ * G.transpose();
   P_.diagonal().array() += kWander * kWander * dt;
+  return with_before;
 }
 
 void GravityEstimate::correct(const FilterState& predicted, const FilterState& after) {

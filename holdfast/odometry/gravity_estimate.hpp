@@ -24,7 +24,8 @@ class GravityEstimate {
   /// After a state without covariance was propagated from `before` to `predicted`, so that P is
   /// what noise added: adds what came of the covariance before and of the uncertainty of gravity.
   /// One transition serves all of it, so that the covariance of state and gravity stays one.
-  void predict(const filter::FilterState& before, filter::FilterState& predicted);
+  /// Returns the covariance of the errors of `predicted` (rows) and `before`.
+  filter::Matrix15d predict(const filter::FilterState& before, filter::FilterState& predicted);
   /// After a scan has corrected `predicted` to `after`.
   void correct(const filter::FilterState& predicted, const filter::FilterState& after);
   /// Pose and velocity begin anew; what is known of gravity and biases stays.

@@ -36,12 +36,11 @@ Matrix15d error_transition(const FilterState& a, const FilterState& b,
 }
 
 Increment increment_between(const FilterState& before, const FilterState& predicted,
-                            const FilterState& after, const Eigen::Vector3d& gravity) {
+                            const FilterState& after, const Matrix15d& predicted_before) {
   Increment increment;
   increment.T_prev_cur = before.T_map_body.inverse() * after.T_map_body;
-  const Matrix15d F = error_transition(before, predicted, gravity);
-  // Cov(after, before) = (I - K H) F P_before, where I - K H = P_after P_predicted^-1.
-  const Matrix15d cross = after.P * predicted.P.ldlt().solve(F * before.P);
+  // The correction leaves the share I - K H = P_after P_predicted^-1 of the prediction's errors.
+  const Matrix15d cross = after.P * predicted.P.ldlt().solve(predicted_before);
   const Eigen::Matrix3d R = before.T_map_body.rotation.toRotationMatrix();
   Matrix6d J_before = Matrix6d::Zero();
   J_before.topLeftCorner<3, 3>() = -R.transpose();

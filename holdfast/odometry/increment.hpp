@@ -20,10 +20,11 @@ filter::Matrix15d error_transition(const filter::FilterState& from, const filter
 
 /// The increment from `before`, by way of `predicted` (propagated from `before`, not yet corrected)
 /// to `after` (corrected). Errors of both ends are correlated: what the scan did not correct, the
-/// IMU carried over from before; the correlation follows from the gain of the correction and from
-/// the transition of the errors, here to first order over one scan.
+/// IMU carried over from before. `predicted_before` is the covariance of the errors of `predicted`
+/// (rows) and `before`.
 Increment increment_between(const filter::FilterState& before, const filter::FilterState& predicted,
-                            const filter::FilterState& after, const Eigen::Vector3d& gravity);
+                            const filter::FilterState& after,
+                            const filter::Matrix15d& predicted_before);
 
 /// Covariance of T_a_c = T_a_b * T_b_c from that of T_a_b and that of an independent increment
 /// T_b_c, both [position in the frame on the left, rotation on the right].

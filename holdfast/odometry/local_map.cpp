@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "holdfast/registration/associate.hpp"
@@ -21,10 +22,13 @@ constexpr std::size_t kSweepCells = 4096;  // looked at in one scan
 constexpr double kAnchorReachM = 32.0;     // from the robot; float is good to 4 micrometres there
 constexpr float kRangeOfHalfWeightM = 40;  // 0.5 mrad are as much as the noise of a range
 constexpr float kFirstFit = 6;
-constexpr float kGrowth = 1.25F;        // between fits
-constexpr float kFloorM = 0.003F;       // roughness that every wall has
-constexpr float kFanM = 0.25F;          // nearer to the LiDAR no plane passes
-constexpr float kFanSine = 0.04F;       // nor at a smaller angle to the rays
+constexpr float kGrowth = 1.25F;         // between fits
+constexpr float kFloorM = 0.003F;        // roughness that every wall has
+constexpr float kFanM = 0.25F;           // nearer to the LiDAR no plane passes
+constexpr float kFanSine = 0.04F;        // nor at a smaller angle to the rays
+constexpr float kBeamsPerSlope = 57.0F;  // beams are told apart at a degree
+constexpr double kOtherPlaceM = 0.2;     // from which the lines are others
+constexpr int kLeastLines = 2;
 constexpr float kAngleSigma = 0.0005F;  // error of the rotation, rad
 constexpr double kLeastRadiusM = 10.0;
 constexpr double kNearlyFull = 0.95, kRoomy = 0.7;
@@ -56,6 +60,8 @@ void LocalMap::clear() {
     layer.anchor_cell.setZero();
   }
   anchor_.setZero();
+  stood_.setConstant(1e9);
+  place_ = 0;
 }
 
 void LocalMap::insert(const std::vector<Eigen::Vector3f>& points, const SE3& T_odom_body,
@@ -64,10 +70,19 @@ void LocalMap::insert(const std::vector<Eigen::Vector3f>& points, const SE3& T_o
   const Eigen::Vector3f t = (T_odom_body.translation - anchor_).cast<float>();
   const Eigen::Vector3f lidar = p_body_lidar.cast<float>();
   const Eigen::Vector3f lidar_in_map = R * lidar + t;
+  const Eigen::Vector3d stands = T_odom_body * p_body_lidar;
+  if ((stands - stood_).norm() > kOtherPlaceM) {
+    stood_ = stands;
+    ++place_;
+  }
   constexpr float kHalf = 1.0F / (kRangeOfHalfWeightM * kRangeOfHalfWeightM);
   for (const Eigen::Vector3f& q : points) {
-    const float weight = 1.0F / (1.0F + (q - lidar).squaredNorm() * kHalf);
-    const Sighting seen{R * q + t, lidar_in_map, weight};
+    const Eigen::Vector3f ray = q - lidar;
+    const float weight = 1.0F / (1.0F + ray.squaredNorm() * kHalf);
+    const float slope = ray.z() / ray.head<2>().norm() * kBeamsPerSlope;
+    const auto beam = static_cast<std::uint32_t>(
+        static_cast<std::int32_t>(std::floor(std::clamp(slope, -1e6F, 1e6F))));
+    const Sighting seen{R * q + t, lidar_in_map, weight, 1U << ((beam + 7 * place_) % 32)};
     for (Layer& layer : layers_) add(layer, seen);
   }
 }
@@ -90,7 +105,7 @@ void LocalMap::add(Layer& layer, const Sighting& seen) {
     layer.cells[at].refit_at = kFirstFit;
   }
   const Eigen::Vector3f centre = (local.cast<float>().array() + 0.5F) * layer.cell_m;
-  add_to(layer, layer.cells[at], {seen.p - centre, seen.lidar - centre, seen.weight});
+  add_to(layer, layer.cells[at], {seen.p - centre, seen.lidar - centre, seen.weight, seen.line});
 }
 
 void LocalMap::add_to(const Layer& layer, Cell& cell, const Sighting& seen) {
@@ -108,6 +123,7 @@ void LocalMap::add_to(const Layer& layer, Cell& cell, const Sighting& seen) {
   cell.scatter[3] += w * d.y() * d.y();
   cell.scatter[4] += w * d.y() * d.z();
   cell.scatter[5] += w * d.z() * d.z();
+  cell.lines |= seen.line;
   cell.weight = sum;
   if (sum >= cell.refit_at) fit(layer, cell);
 }
@@ -132,6 +148,7 @@ void LocalMap::fit(const Layer& layer, Cell& cell) const {
                       kAngleSigma * kAngleSigma * ray.squaredNorm();
   const auto slack = static_cast<float>(config_.noise_slack * config_.noise_slack);
   cell.is_plane = false;
+  if (std::popcount(cell.lines) < kLeastLines) return;
   if (variance[0] > slack * noise * (1.0F + 2.0F * std::sqrt(2.0F / n))) return;
   if (past < kFanM || past < kFanSine * ray.norm()) return;
   // Error of the plane over the cell: of its offset, and of its two tilts at a typical lever.

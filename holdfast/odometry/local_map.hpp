@@ -45,7 +45,8 @@ struct LocalMapConfig {
 /// Cells come in three sizes. A large plane is known far better than a small one, above all its
 /// tilt: tilts that follow the noise hold the robot where it saw them. So the largest cell that is
 /// one plane answers, and the small ones serve where surfaces meet. A cell is no plane while its
-/// points are too few or on a line, and where they are thicker than the noise of ranges explains.
+/// points are too few or on less than three lines (two lines lie on a plane whatever they were
+/// drawn on), and where they are thicker than the noise of ranges explains.
 ///
 /// A SurfaceMap: registration::associate and filter::update_with_scan take it like a prior map.
 class LocalMap {
@@ -101,6 +102,7 @@ class LocalMap {
     Eigen::Vector3f mean = Eigen::Vector3f::Zero();
     Eigen::Vector3f seen_from = Eigen::Vector3f::Zero();  ///< mean place of the LiDAR
     std::array<float, 6> scatter{};  ///< sums of products about the mean: xx, xy, xz, yy, yz, zz
+    std::uint32_t lines = 0;         ///< bits of the lines that its points lie on
     float weight = 0;
     float refit_at = 0;  ///< weight from which on the plane is fitted anew
     std::uint64_t key = 0;
@@ -123,6 +125,7 @@ class LocalMap {
   struct Sighting {
     Eigen::Vector3f p, lidar;
     float weight;
+    std::uint32_t line;  ///< a bit of the beam and of the place that it was seen from
   };
   void add(Layer& layer, const Sighting& seen);
   void add_to(const Layer& layer, Cell& cell, const Sighting& seen);
@@ -134,6 +137,8 @@ class LocalMap {
   float range_variance_;
   std::array<Layer, kSizes> layers_;
   Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d stood_ = Eigen::Vector3d::Constant(1e9);  ///< LiDAR when places were last counted
+  std::uint32_t place_ = 0;
   std::uint64_t refused_ = 0;
 };
 

@@ -29,6 +29,8 @@ constexpr double kShareMemory = 0.05;
 constexpr std::size_t kEnoughPoints = 300;    // to contradict anything
 constexpr double kLongestFirstWayM = 3.0;     // between the first two scans
 constexpr double kAccelerationAtStart = 0.3;  // m/s^2, that levelling takes for gravity
+constexpr double kNormalSigma = 0.005;        // rad, common to the normals of a scan
+constexpr double kLocalSeconds = 2.0;         // for which a scan meets what was seen before
 constexpr double kFirstSpeedSigma = 0.5;      // m/s, of the way between two scans
 
 double largest_sigma(const Eigen::Matrix3d& P) {
@@ -176,20 +178,21 @@ void Odometry::wait_for_returns(OdometryReport& report) {
 
 void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
   const double dt = to_seconds(report.step.pose_time - state_.t);
-  const bool found = !scan_.selected.empty() && dt * setup_.fastest_m_s < kLongestFirstWayM &&
-                     find_first_motion(first_, scan_, report.step.pose_time, setup_.fastest_m_s,
-                                       gravity_.value(), options(), pool_, map_, work_);
+  FirstMotion motion = FirstMotion::kNone;
+  if (!scan_.selected.empty() && dt * setup_.fastest_m_s < kLongestFirstWayM) {
+    motion = find_first_motion(first_, scan_, report.step.pose_time, setup_.fastest_m_s,
+                               gravity_.value(), options(), pool_, map_, work_);
+  }
   clock.book(Stage::kStart);
-  if (!found) {
+  if (motion == FirstMotion::kNone) {
     predict(report.step.pose_time, report);
     wait_for_returns(report);
     return;
   }
+  if (motion == FirstMotion::kRests && epoch_ == 0) rest_.begin();
   state_ = first_.state;
   set_sigma(state_, FilterState::kV, kFirstSpeedSigma);
-  Passage passage{state_, state_, gravity_};
-  predict(report.step.pose_time, report);
-  passage.predicted = state_;
+  const Passage passage = pass(report);
   UpdateResult update = correct(clock);
   if (update.usable) {
     // Once more with the better velocity, which moved the points of both scans.
@@ -202,8 +205,9 @@ void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
   accept(update, passage, clock, report);
 }
 
-bool Odometry::predict(TimeNs to, OdometryReport& report) {
-  if (!imu_.segment(state_.t, to, segment_)) return false;
+/// Carries the state to `to`; returns the covariance of the errors there and here.
+filter::Matrix15d Odometry::predict(TimeNs to, OdometryReport& report) {
+  imu_.segment(state_.t, to, segment_);
   report.step.imu_held_ns = segment_.held_ns;
   const bool holding = segment_.held_ns > filter::kLongestHold;
   if (holding && !biases_before_hold_) biases_before_hold_ = state_.biases();
@@ -215,13 +219,30 @@ bool Odometry::predict(TimeNs to, OdometryReport& report) {
   const FilterState before = state_;
   state_.P.setZero();
   propagate(state_, segment_, gravity_.value(), setup_.imu);
-  gravity_.predict(before, state_);
-  return true;
+  return gravity_.predict(before, state_);
+}
+
+Odometry::Passage Odometry::pass(OdometryReport& report) {
+  Passage passage{state_, state_, gravity_, filter::Matrix15d::Zero()};
+  passage.predicted_before = predict(report.step.pose_time, report);
+  if (rest_.holds(segment_)) {
+    const FilterState moving = state_;
+    passage.predicted_before = Rest::correct(state_) * passage.predicted_before;
+    gravity_.correct(moving, state_);
+  }
+  passage.predicted = state_;
+  return passage;
 }
 
 UpdateResult Odometry::correct_at(int level, const FilterState& predicted, StageClock& clock) {
   const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
   filter::UpdateOptions how = options();
+  // Walls are parallel to a way that nothing measures only as well as normals are known: while the
+  // way is uncertain, they shift sideways by as much.
+  const double way = std::min(largest_sigma(predicted.P, FilterState::kP),
+                              kLocalSeconds * largest_sigma(predicted.P, FilterState::kV));
+  how.map_sigma_m = std::hypot(how.map_sigma_m, kNormalSigma * way);
+  how.map_sigma_rad = 0.1 * how.map_sigma_m;
   how.association.level = level;
   // As long as nothing else tells the velocity, the skew of the scan does.
   how.velocity_from_skew = largest_sigma(predicted.P, FilterState::kV) * span > kSkewToldM;
@@ -275,12 +296,14 @@ UpdateResult Odometry::release_biases(const UpdateResult& update, Passage& passa
   gravity_ = passage.gravity_before;
   state_.P.diagonal().segment<3>(FilterState::kBa).array() += kAccelBiasJump * kAccelBiasJump;
   state_.P.diagonal().segment<3>(FilterState::kBg).array() += kGyroBiasJump * kGyroBiasJump;
-  predict(report.step.pose_time, report);
+  // The biases may have moved since: errors now and before have that much less in common.
+  const filter::Matrix15d predicted_before = predict(report.step.pose_time, report);
   const FilterState predicted = state_;
   clock.book(Stage::kPredict);
   const UpdateResult released = correct(clock);
   if (released.usable && released.equations.weight > kFitsBetter * update.equations.weight) {
     passage.predicted = predicted;
+    passage.predicted_before = predicted_before;
     return released;
   }
   state_ = held;
@@ -289,9 +312,7 @@ UpdateResult Odometry::release_biases(const UpdateResult& update, Passage& passa
 }
 
 void Odometry::track(StageClock& clock, OdometryReport& report) {
-  Passage passage{state_, state_, gravity_};
-  predict(report.step.pose_time, report);
-  passage.predicted = state_;
+  Passage passage = pass(report);
   clock.book(Stage::kPredict);
   const double growth = largest_sigma(state_.P, FilterState::kP) - sigma_at_scan_m_;
   if (growth > setup_.odometry.lost_sigma_m) {
@@ -309,6 +330,7 @@ void Odometry::track(StageClock& clock, OdometryReport& report) {
     }
   } else {
     contradictions_ = 0;
+    if (surprised > kSurprise) rest_.end();
     if (surprised > kSurprise && state_.t >= last_surprise_ + kSettle) {
       update = release_biases(update, passage, clock, report);
     }
@@ -362,7 +384,8 @@ void Odometry::begin_epoch(const char* reason, OdometryReport& report) {
 
 void Odometry::add_increment(const Passage& passage, OdometryReport& report) {
   const FilterState& before = passage.before;
-  Increment increment = increment_between(before, passage.predicted, state_, gravity_.value());
+  Increment increment =
+      increment_between(before, passage.predicted, state_, passage.predicted_before);
   increment.covariance *= setup_.odometry.inflation;
   const SE3 T_epoch{before.T_map_body.rotation, Eigen::Vector3d::Zero()};
   drift_ = compose_covariance(T_epoch, drift_, increment);

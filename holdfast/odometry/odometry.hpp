@@ -7,6 +7,7 @@
 #include "holdfast/odometry/gravity_estimate.hpp"
 #include "holdfast/odometry/increment.hpp"
 #include "holdfast/odometry/odometry_config.hpp"
+#include "holdfast/odometry/rest.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 
 namespace holdfast::odometry {
@@ -71,15 +72,17 @@ class Odometry {
     filter::FilterState before;
     filter::FilterState predicted;
     GravityEstimate gravity_before;
+    filter::Matrix15d predicted_before;  ///< covariance of the errors of the two
   };
 
   void step(const Scan& scan, StageClock& clock, OdometryReport& report);
   bool prepare(const Scan& scan, StageClock& clock, OdometryReport& report);
   void level(const Scan& scan);
   void wait_for_returns(OdometryReport& report);
+  Passage pass(OdometryReport& report);
   void second_scan(StageClock& clock, OdometryReport& report);
   void track(StageClock& clock, OdometryReport& report);
-  bool predict(TimeNs to, OdometryReport& report);
+  filter::Matrix15d predict(TimeNs to, OdometryReport& report);
   filter::UpdateResult correct(StageClock& clock);
   filter::UpdateResult correct_at(int level, const filter::FilterState& predicted,
                                   StageClock& clock);
@@ -97,6 +100,7 @@ class Odometry {
 
   Setup setup_;
   GravityEstimate gravity_;
+  Rest rest_;
   LocalMap map_;
   WorkerPool pool_;
   preprocess::ImuBuffer imu_;
