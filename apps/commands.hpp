@@ -17,6 +17,7 @@ struct CommandFailed {
 void add_simulate_command(CLI::App& app);
 void add_map_command(CLI::App& app);
 void add_localize_command(CLI::App& app);
+void add_odometry_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_config_command(CLI::App& app);

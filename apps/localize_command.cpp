@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "apps/commands.hpp"
+#include "apps/log_account.hpp"
 #include "apps/progress_bar.hpp"
 #include "apps/run_options.hpp"
 #include "evaluation/report/report.hpp"
@@ -37,37 +38,6 @@ struct Run {
   }
 };
 
-std::vector<std::pair<std::string, std::uint64_t>> counters_of(const io::LogCounters& c) {
-  return {{"imu_samples", c.imu_samples},
-          {"scans", c.scans},
-          {"points", c.points},
-          {"invalid_points", c.invalid_points},
-          {"empty_scans", c.empty_scans},
-          {"non_finite_imu", c.non_finite_imu},
-          {"imu_stamps_back", c.imu_stamps_back},
-          {"scan_stamps_back", c.scan_stamps_back},
-          {"bad_messages", c.bad_messages},
-          {"truncated", c.truncated ? 1U : 0U}};
-}
-
-std::vector<std::string> warnings_of(const io::LogReader& reader, bool point_times) {
-  const io::LogCounters& c = reader.counters();
-  std::vector<std::string> warnings;
-  const auto warn = [&](std::uint64_t count, const char* what) {
-    if (count > 0) warnings.push_back(fmt::format("{} {}", count, what));
-  };
-  warn(c.bad_messages, "messages do not hold together and were left out");
-  warn(c.non_finite_imu, "IMU readings are not finite and were left out");
-  warn(c.imu_stamps_back, "IMU readings are not later than the one before and were left out");
-  warn(c.scan_stamps_back, "scans are not later than the one before and were left out");
-  warn(c.empty_scans, "scans are empty");
-  if (c.truncated) warnings.emplace_back("the log ends early; what came before was used");
-  if (!point_times) {
-    warnings.emplace_back("the points carry no times: motion during a scan is not corrected");
-  }
-  return warnings;
-}
-
 pipeline::Config load_config(const Arguments& args) {
   pipeline::Config config = value_or_fail(args.run.load(args.log));
   if (!args.method.empty()) {
@@ -99,8 +69,8 @@ pipeline::RunSummary::About about_run(const Arguments& args, const pipeline::Con
   about.map_identity = info.identity;
   about.threads = args.run.threads;
   about.elapsed_s = elapsed_s;
-  about.counters = counters_of(reader.counters());
-  about.warnings = warnings_of(reader, !reader.point_times().field.empty());
+  about.counters = counters_of(reader);
+  about.warnings = warnings_of(reader);
   return about;
 }
 

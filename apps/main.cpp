@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   add_simulate_command(app);
   add_map_command(app);
   add_localize_command(app);
+  add_odometry_command(app);
   add_evaluate_command(app);
   add_bench_command(app);
   add_config_command(app);

@@ -13,6 +13,8 @@ std::vector<io::FieldRef> fields_of(Config& config) {
   io::collect_fields("estimator", config.estimator, fields);
   io::collect_fields("estimator.unmeasured", config.estimator.noise.unmeasured, fields);
   io::collect_fields("graph", config.graph, fields);
+  io::collect_fields("odometry", config.odometry, fields);
+  io::collect_fields("odometry.local_map", config.local_map, fields);
   return fields;
 }
 

@@ -7,6 +7,7 @@
 #include "baselines/map_filter.hpp"
 #include "holdfast/estimator/smoother_options.hpp"
 #include "holdfast/io/config_io.hpp"
+#include "holdfast/odometry/odometry_config.hpp"
 #include "holdfast/pipeline/methods/graph_localizer.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 
@@ -52,6 +53,8 @@ struct Config {
   baselines::MapFilterConfig map_filter;
   estimator::SmootherConfig estimator;
   GraphConfig graph;
+  odometry::OdometryConfig odometry;
+  odometry::LocalMapConfig local_map;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
