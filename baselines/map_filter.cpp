@@ -12,10 +12,10 @@ constexpr double kMapRadiusM = 150.0;  // tiles farther than this are not needed
 constexpr int kScansToConfirm = 2;
 constexpr TimeNs kTimeToSettle = kSecond / 4;
 constexpr TimeNs kImuMemory = 2 * kSecond;
-constexpr double kAccelBiasJump = 0.3;         // m/s^2, what a bias may jump by
-constexpr double kGyroBiasJump = 0.03;         // rad/s
-constexpr double kClearlyMore = 1.02;
-constexpr double kSkewToldM = 0.005;           // skew that is worth being estimated
+constexpr double kAccelBiasJump = 0.3;  // m/s^2, what a bias may jump by
+constexpr double kGyroBiasJump = 0.03;  // rad/s
+constexpr double kClearlyMore = 1.01;
+constexpr double kSkewToldM = 0.04;            // skew that is worth being estimated
 constexpr double kCoarseFromM = 0.1;           // uncertainty from which coarse planes are asked
 constexpr float kCoarseSurfaceSigmaM = 0.05F;  // while coarse planes are matched
 
@@ -108,7 +108,6 @@ void MapFilter::start(StepReport& report) {
   report.inlier_share = starts_.front().inlier_share;
   started_ = true;
   start_time_ = report.pose_time;
-  last_surprise_ = report.pose_time;  // the velocity settles first
   confirmed_ = 1;
   report.reason = "first scan aligned";
 }
@@ -121,7 +120,7 @@ void MapFilter::choose_start(StageClock& clock, StepReport& report) {
     state_ = start.state;
     predict(report.pose_time, report);
     const UpdateResult update = correct(clock);
-    // The slow start comes first, and where the scans cannot tell it is the likelier one.
+    // The likelier ones come first, and are taken where the scans cannot tell.
     if (!update.usable || update.equations.weight <= kClearlyMore * best_weight) continue;
     best_weight = update.equations.weight;
     best = start.state;
@@ -191,11 +190,11 @@ UpdateResult MapFilter::correct(StageClock& clock) {
 /// True where the scan moved the predicted pose by more than the prediction's covariance allows:
 /// the squared Mahalanobis distance is chi-square with 6 degrees of freedom at most, and exceeds 40
 /// once in two million scans. After a surprise the filter is given a second to settle: velocity and
-/// biases that were let go follow the errors of single scans.
+/// biases that were let go follow the errors of single scans. Likewise after the start.
 bool MapFilter::surprised_by_imu(const FilterState& predicted) const {
   constexpr double kSurprise = 40.0;
   constexpr TimeNs kSettle = kSecond * 3 / 10;
-  if (state_.t < last_surprise_ + kSettle) return false;
+  if (state_.t < last_surprise_ + kSettle || state_.t < start_time_ + kSecond) return false;
   const Eigen::Matrix<double, 6, 1> moved = state_.minus(predicted).head<6>();
   return moved.dot(predicted.P.topLeftCorner<6, 6>().ldlt().solve(moved)) > kSurprise;
 }

@@ -181,6 +181,16 @@ struct Search {
   }
 };
 
+/// The given pose is likelier than one at the border of its uncertainty, by so little that it only
+/// decides where the world looks the same along some direction.
+double plausibility(const FilterState& state, const FilterState& prior,
+                    const InitialUncertainty& uncertainty) {
+  constexpr double kAtTheBorder = 0.06;
+  const double off =
+      (state.T_map_body.translation - prior.T_map_body.translation).norm() / uncertainty.position_m;
+  return std::max(0.0, 1.0 - kAtTheBorder * off * off);
+}
+
 /// Candidates of one motion from all of the pattern, the best first.
 std::vector<Candidate> ranked(const Search& search, const SelectedScan& few,
                               const FilterState& prior, const Motion& motion) {
@@ -191,13 +201,35 @@ std::vector<Candidate> ranked(const Search& search, const SelectedScan& few,
     Candidate lifted = given;
     search.choose_height(lifted.state);
     for (Candidate& candidate : {std::ref(given), std::ref(lifted)}) {
-      candidate.score = search.descend(few, kFirstFine, kDescent.size(), candidate);
+      candidate.score = search.descend(few, kFirstFine, kDescent.size(), candidate) *
+                        plausibility(candidate.state, prior, search.uncertainty);
       candidates.push_back(candidate);
     }
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
   return candidates;
+}
+
+/// True where the readings are those of a robot at rest, or of one that moves very evenly.
+bool is_still(const preprocess::ImuSegment& imu) {
+  constexpr double kRate = 0.03;  // rad/s
+  constexpr double kForce = 0.3;  // m/s^2, from one reading to the others
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const ImuSample& s : imu.samples) mean += s.accel_m_s2;
+  mean /= static_cast<double>(std::max<std::size_t>(imu.samples.size(), 1));
+  return std::all_of(imu.samples.begin(), imu.samples.end(), [&](const ImuSample& s) {
+    return s.gyro_rad_s.norm() < kRate && (s.accel_m_s2 - mean).norm() < kForce;
+  });
+}
+
+/// The motions to be tried, the likeliest first.
+std::vector<Motion> motions(const preprocess::ImuSegment& imu, double speed) {
+  std::vector<Motion> list;
+  if (is_still(imu)) list.push_back({false, std::min(0.3, speed), std::min(0.05, speed)});
+  list.push_back({false, std::min(1.5, speed), std::min(0.1, speed)});
+  list.push_back({true, speed, std::min(0.5, speed)});
+  return list;
 }
 
 bool same_place(const FilterState& a, const FilterState& b) {
@@ -228,17 +260,18 @@ std::vector<StartCandidate> align_initially(const map::PriorMap& map, const Sele
                                             const UpdateOptions& options, WorkerPool& pool,
                                             UpdateWorkspace& work) {
   const Search search{map, gravity, options, uncertainty, pool, work};
-  const double speed = uncertainty.speed_m_s;
-  const Motion slow{false, std::min(1.5, speed), std::min(0.1, speed)};
-  const Motion fast{true, speed, std::min(0.5, speed)};
   const SelectedScan few = thinned(scan, kSearchPoints);
   std::vector<StartCandidate> starts;
-  for (const Motion& motion : {slow, fast}) {
+  for (const Motion& motion : motions(scan.imu, uncertainty.speed_m_s)) {
     StartCandidate best;
+    double best_score = 0;
     for (Candidate& candidate : distinct(ranked(search, few, prior, motion), kRefined)) {
       const double share = search.descend(scan, kFirstFine, kDescent.size(), candidate) /
                            static_cast<double>(scan.selected.size());
-      if (share > best.inlier_share) best = {candidate.state, share};
+      const double score = share * plausibility(candidate.state, prior, uncertainty);
+      if (score <= best_score) continue;
+      best_score = score;
+      best = {candidate.state, share};
     }
     if (best.inlier_share > 0) starts.push_back(best);
   }

@@ -20,8 +20,9 @@ struct StartCandidate {
 /// Pose and velocity of the body at the end of a scan, from a pose that may be off by
 /// `uncertainty`: starts from a fixed pattern of poses around `prior` (position and yaw), each
 /// drawn into the map from the coarsest to the finest resolution with few points, and the best of
-/// them refined with all. Up to two candidates, of a slow and of a fast motion: one scan of a road
-/// cannot tell them apart, the next one can. Same input, same result.
+/// them refined with all. Up to three candidates, of a robot at rest (where the IMU is still), a
+/// slow and a fast one, in this order: one scan of a road cannot tell them apart, the next one can.
+/// Same input, same result.
 std::vector<StartCandidate> align_initially(const map::PriorMap& map, const SelectedScan& scan,
                                             const FilterState& prior,
                                             const InitialUncertainty& uncertainty,

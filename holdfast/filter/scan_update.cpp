@@ -173,7 +173,7 @@ class Iteration {
 
 MapError map_error(const UpdateOptions& options, double span_s, const NormalEquations& equations) {
   const double variance = options.map_sigma_m * options.map_sigma_m;
-  return {registration::feigned_offset(equations) + variance * Eigen::Matrix3d::Identity(),
+  return {registration::feigned_offset(equations.H) + variance * Eigen::Matrix3d::Identity(),
           options.map_sigma_rad, 2.0 * options.map_sigma_m / std::max(span_s, 1e-3)};
 }
 

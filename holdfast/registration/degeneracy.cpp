@@ -33,16 +33,15 @@ Matrix3d position_information(const Matrix9d& H) {
   return H.block<3, 3>(kPosition, kPosition) - pr * pseudo_inverse(rr) * pr.transpose();
 }
 
-Matrix3d feigned_offset(const NormalEquations& equations) {
+Matrix3d feigned_offset(const Matrix9d& H) {
   constexpr double kNowhere = 100.0;  // m^2, where all of the information is feigned
-  const Matrix3d information = position_information(equations.H);
+  const Matrix3d information = position_information(H);
   const double by_normals = kNormalSigma * kNormalSigma * information.trace();
   const Solver solver(information);
   Eigen::Vector3d variance;
   for (int i = 0; i < 3; ++i) {
     const double seeming = std::max(solver.eigenvalues()[i], 1e-9);
-    const Eigen::Vector3d d = solver.eigenvectors().col(i);
-    const double real = seeming - by_normals - d.dot(equations.doubt * d);
+    const double real = seeming - by_normals;
     variance[i] = real > 1.0 / kNowhere ? std::min(1.0 / real - 1.0 / seeming, kNowhere) : kNowhere;
   }
   return solver.eigenvectors() * variance.asDiagonal() * solver.eigenvectors().transpose();

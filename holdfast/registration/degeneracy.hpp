@@ -17,11 +17,10 @@ namespace holdfast::registration {
 Eigen::Matrix3d position_information(const Matrix9d& H);
 
 /// Covariance (m^2, map frame) of a position offset that takes away the information which the scan
-/// only seems to hold; marginalising an offset with this covariance leaves what is real. Information
-/// is feigned by normals, which are off by some milliradians and give every direction a share of the
-/// information of the others, and by pairs that do not agree (NormalEquations::doubt): a few points
-/// of a wall near a small face across it would otherwise hold a robot in a bare tunnel.
-Eigen::Matrix3d feigned_offset(const NormalEquations& equations);
+/// only seems to hold: normals are off by some milliradians and give every direction a share of the
+/// information of the others, which vanishes as soon as the points are paired anew. Marginalising
+/// an offset with this covariance leaves what is real.
+Eigen::Matrix3d feigned_offset(const Matrix9d& H);
 
 /// Unit vectors of the map frame, the weakest first, along which one scan determines the position
 /// worse than `sigma_m`, the rotation being free. Normals of a map are off by some milliradians,

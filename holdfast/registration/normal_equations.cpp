@@ -12,7 +12,6 @@ using Load = Eigen::Map<const Lane>;
 /// are not copies of each other.
 struct LaneSums {
   Lane nn[6], nm[9], mm[6];               // H of position and rotation
-  Lane nn_doubt[6];
   Lane nn_age[6], nm_age[9], nn_age2[6];  // and of velocity
   Lane n_r[3], m_r[3], n_r_age[3];
   Lane cost, weight, abs_residual, pairs;
@@ -61,16 +60,12 @@ void add_lanes(const Correspondences& c, std::size_t i, const Pose& pose, float 
   const Lane shrink = scale_sq / (scale_sq + k_sq);
   const Lane robust = shrink * shrink;
   const Lane w = robust * information;
-  // d(weight k)/dk = weight (1 - 4 k^2 / (c^2 + k^2))
-  const Lane doubt = w * k_sq * shrink * (4.0F / scale_sq);
   const Lane m[3] = {qy * uz - qz * uy, qz * ux - qx * uz, qx * uy - qy * ux};
   const Lane wn[3] = {w * n[0], w * n[1], w * n[2]};
   const Lane wm[3] = {w * m[0], w * m[1], w * m[2]};
   const Lane wna[3] = {wn[0] * age, wn[1] * age, wn[2] * age};
   const Lane na[3] = {n[0] * age, n[1] * age, n[2] * age};
   add_symmetric(s.nn, wn, n);
-  const Lane dn[3] = {doubt * n[0], doubt * n[1], doubt * n[2]};
-  add_symmetric(s.nn_doubt, dn, n);
   add_full(s.nm, wn, m);
   add_symmetric(s.mm, wm, m);
   add_symmetric(s.nn_age, wna, n);
@@ -117,7 +112,6 @@ NormalEquations total(const LaneSums& s) {
   e.g.segment<3>(kPosition) = vector(s.n_r);
   e.g.segment<3>(kRotation) = vector(s.m_r);
   e.g.segment<3>(kVelocity) = vector(s.n_r_age);
-  e.doubt = symmetric(s.nn_doubt);
   e.cost = s.cost.sum();
   e.weight = s.weight.sum();
   e.abs_residual = s.abs_residual.sum();
@@ -149,7 +143,6 @@ Correspondences padded_tail(const Correspondences& c, std::size_t begin, std::si
 NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   H += other.H;
   g += other.g;
-  doubt += other.doubt;
   cost += other.cost;
   weight += other.weight;
   abs_residual += other.abs_residual;

@@ -20,9 +20,6 @@ using Vector9d = Eigen::Matrix<double, kUnknowns, 1>;
 struct NormalEquations {
   Matrix9d H = Matrix9d::Zero();
   Vector9d g = Vector9d::Zero();
-  /// What the position block of H loses when the bend of the robust loss is counted: far from their
-  /// planes its slope falls again. Where pairs do not agree, nothing of H is left.
-  Eigen::Matrix3d doubt = Eigen::Matrix3d::Zero();
   double cost = 0;          ///< sum of squared whitened residuals, bounded by the robust loss
   double weight = 0;        ///< sum of robust weights: how many pairs are believed
   double abs_residual = 0;  ///< sum of weight * |distance|, m

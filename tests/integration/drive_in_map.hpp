@@ -101,11 +101,15 @@ struct SurveyedDrive {
   explicit SurveyedDrive(const simulation::SimulationOptions& options)
       : simulation(valid(simulation::Simulation::create(options))), map(simulation->survey_map()) {}
 
+  std::string method = pipeline::Config{}.method;
+
   std::vector<StepReport> localize(int threads = 1) { return localize(*simulation, threads); }
   /// `log` is what became of the simulation's events.
   std::vector<StepReport> localize(SensorSource& log, int threads = 1) {
     const SE3 start = simulation->initial_pose();
-    return reports_of(log, map, config_of(*simulation), start, threads);
+    pipeline::Config config = config_of(*simulation);
+    config.method = method;
+    return reports_of(log, map, config, start, threads);
   }
 
   /// Distance of a report's pose to the truth, m.

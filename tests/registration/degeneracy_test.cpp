@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
@@ -138,6 +139,30 @@ TEST(PositionInformation, IsWhatIsLeftWhenTheRotationIsFree) {
   // Products of floats of relative error 6e-8 cancel to 1 / 1200 of their size.
   EXPECT_NEAR(information(1, 1), expected, 0.01 * expected);
   EXPECT_LT(information(1, 1), 0.001 * wall.H()(1, 1));
+}
+
+TEST(FeignedOffset, IsSmallWhereEveryDirectionIsHeld) {
+  Scene room;
+  room.add_box({3, 2, 1.5}, "xyz");
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> offset(feigned_offset(room.H()));
+  const double scan = 1.0 / position_information(room.H()).diagonal().minCoeff();
+  EXPECT_LT(offset.eigenvalues()[2], 1e-3 * scan);
+}
+
+TEST(FeignedOffset, LeavesNothingOfWhatTiltedNormalsTellOfTheAxisOfACorridor) {
+  RandomStream random(1, "tilts");
+  Scene corridor;
+  for (int i = 0; i < 4000; ++i) {
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    const Vector3d normal = Vector3d(0.003 * random.normal(), side, 0.003 * random.normal());
+    corridor.add({random.uniform(-20, 20), 1.5 * side, random.uniform(-1, 1)}, normal.normalized());
+    const Vector3d up = Vector3d(0.003 * random.normal(), 0, side);
+    corridor.add({random.uniform(-20, 20), random.uniform(-1.5, 1.5), side}, up.normalized());
+  }
+  // The tilts alone seem to tell the axis to within a decimetre.
+  EXPECT_GT(position_information(corridor.H())(0, 0), 100.0);
+  EXPECT_GT(feigned_offset(corridor.H())(0, 0), 50.0);
+  EXPECT_LT(feigned_offset(corridor.H())(1, 1), 1e-6);
 }
 
 }  // namespace

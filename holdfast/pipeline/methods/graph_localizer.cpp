@@ -17,8 +17,8 @@ constexpr TimeNs kImuMemory = 2 * kSecond;
 constexpr double kLeastWeight = 30.0;
 constexpr double kCoarseFromM = 0.1;
 constexpr float kCoarseSurfaceSigmaM = 0.05F;
-constexpr double kLeverM = 10.0;      // of the map's own error: how far its planes are away
-constexpr int kJumpAges = 4;          // intervals in which a bias may have jumped unnoticed
+constexpr double kLeverM = 10.0;        // of the map's own error: how far its planes are away
+constexpr int kJumpAges = 4;            // intervals in which a bias may have jumped unnoticed
 constexpr double kMostScansAlike = 30;  // of the same part of the map, however slow the robot
 
 double largest_sigma(const Matrix18d& P, int offset) {
@@ -141,8 +141,26 @@ bool GraphLocalizer::prepare(const Scan& scan, StepReport& report) {
 bool GraphLocalizer::predict(TimeNs to, StepReport& report) {
   if (!imu_.segment(smoother_.newest().t, to, segment_)) return false;
   report.imu_held_ns = segment_.held_ns;
+  const bool holding = segment_.held_ns > filter::kLongestHold;
+  if (holding && !before_hold_) before_hold_ = filter_state_of_newest().biases();
+  if (!holding && before_hold_) restore_biases();
   smoother_.push(segment_);
   return true;
+}
+
+filter::FilterState GraphLocalizer::filter_state_of_newest() const {
+  return filter_state_of(smoother_.newest(), smoother_.covariance_of_newest());
+}
+
+/// While the IMU was silent the biases stood for what the robot did; now they are biases again.
+void GraphLocalizer::restore_biases() {
+  filter::FilterState state = filter_state_of_newest();
+  state.set_biases(*before_hold_);
+  before_hold_.reset();
+  Matrix18d P = Matrix18d::Zero();
+  P.topLeftCorner<15, 15>() = state.P;
+  P.bottomRightCorner<3, 3>() = smoother_.covariance_of_newest().bottomRightCorner<3, 3>();
+  smoother_.reset(node_of(state, smoother_.newest().gravity_map), P);
 }
 
 GraphLocalizer::Match GraphLocalizer::match(const NodeState& predicted, StageClock& clock) {
@@ -202,8 +220,7 @@ bool GraphLocalizer::lead_by_coarse_planes(const NodeState& predicted, double si
   for (int level = sigma_m > 3.0 * kCoarseFromM ? 2 : 1; level > 0; --level) {
     filter::UpdateOptions how = options();
     how.association.level = level;
-    how.association.gate_m =
-        std::max(how.association.gate_m, static_cast<float>(3.0 * sigma_m));
+    how.association.gate_m = std::max(how.association.gate_m, static_cast<float>(3.0 * sigma_m));
     how.association.surface_sigma_m = kCoarseSurfaceSigmaM;
     how.association.ambiguity_sigmas = 0;
     const auto update = filter::update_with_scan(*map_, scan_, predicted.gravity_map, how, pool_,
@@ -242,8 +259,7 @@ void GraphLocalizer::describe(const Match& match, StepReport& report) const {
   report.sigma_trans_m = largest_sigma(P, NodeState::kP);
   report.sigma_rot_rad = largest_sigma(P, NodeState::kR);
   if (match.usable)
-    report.weak_directions =
-        registration::weak_directions(e.H, setup_.start.filter.weak_sigma_m);
+    report.weak_directions = registration::weak_directions(e.H, setup_.start.filter.weak_sigma_m);
 }
 
 void GraphLocalizer::judge(const Match& match, StepReport& report) const {

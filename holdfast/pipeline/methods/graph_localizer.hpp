@@ -64,6 +64,8 @@ class GraphLocalizer : public ScanLocalizer {
   void step(const Scan& scan, StageClock& clock, StepReport& report);
   bool prepare(const Scan& scan, StepReport& report);
   bool predict(TimeNs to, StepReport& report);
+  filter::FilterState filter_state_of_newest() const;
+  void restore_biases();
   Match match(const estimator::NodeState& predicted, StageClock& clock);
   Match match_finely(const filter::UpdateOptions& options, StageClock& clock);
   bool lead_by_coarse_planes(const estimator::NodeState& predicted, double sigma_m,
@@ -84,6 +86,7 @@ class GraphLocalizer : public ScanLocalizer {
   estimator::FixedLagSmoother smoother_;
   std::uint64_t scan_number_ = 0;
   double travel_per_scan_m_ = 0;
+  std::optional<filter::FilterState::Biases> before_hold_;  ///< while the IMU is silent
 };
 
 }  // namespace holdfast::pipeline
