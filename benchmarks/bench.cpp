@@ -13,7 +13,7 @@
 namespace holdfast::benchmarks {
 namespace {
 
-constexpr std::array<BenchInfo, 6> kBenches = {{
+constexpr std::array<BenchInfo, 7> kBenches = {{
     {"step",
      "time of a step, beside a k-d-tree registration and plain reading of the log",
      {1, 1},
@@ -36,6 +36,11 @@ constexpr std::array<BenchInfo, 6> kBenches = {{
      {1, 5},
      60,
      measure_deskew},
+    {"odometry",
+     "drift, consistency, time and memory of the odometry alone",
+     {1, 5},
+     60,
+     measure_odometry},
 }};
 
 constexpr std::uint64_t kMostSeeds = 1000;

@@ -33,4 +33,8 @@ Result<BenchReport> measure_features(const BenchOptions& options);
 /// `threads` drives run at a time, each on one thread.
 Result<BenchReport> measure_deskew(const BenchOptions& options);
 
+/// The odometry alone over worlds and seeds: drift over 10, 20 and 50 m, consistency of its
+/// increments, time and memory. `threads` drives run at a time, each on one thread.
+Result<BenchReport> measure_odometry(const BenchOptions& options);
+
 }  // namespace holdfast::benchmarks

@@ -10,12 +10,14 @@ using filter::FilterState;
 
 constexpr double kStepM = 0.3;
 constexpr double kSearchSigmaM = 0.2;
-constexpr double kRestSigmaM = 0.003;
+constexpr double kClimbSigmaM = 0.03;  // likewise upwards: robots hardly climb
+constexpr double kFelt = 30.0;         // squared sigmas from which a way is none of the noise
 constexpr std::size_t kSearchPoints = 1500;
-constexpr double kBetter = 1.02;      // so much more must agree for a faster motion
+constexpr double kBetter = 40.0;      // squared sigmas by which a faster motion must explain more
+constexpr double kNothing = 1e12;     // cost of what cannot be matched
 constexpr double kLeastShare = 0.15;  // of the points that must agree
 
-/// Displacements in the horizontal plane, shortest first; the guess before all.
+/// Displacements in the horizontal plane, shortest first; the guess after rest.
 std::vector<Eigen::Vector3d> displacements(const Eigen::Vector3d& guess, double longest) {
   std::vector<Eigen::Vector3d> all;
   const int steps = static_cast<int>(std::ceil(longest / kStepM));
@@ -27,7 +29,8 @@ std::vector<Eigen::Vector3d> displacements(const Eigen::Vector3d& guess, double 
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
-  all.insert(all.begin(), guess);
+  // Rest before all.
+  if (guess.norm() > 0) all.insert(all.begin() + 1, guess);
   return all;
 }
 
@@ -37,13 +40,13 @@ void set_sigma(FilterState& state, int offset, double sigma) {
 
 /// Where the second scan ends, as the gyroscope turns, displaced by `d` and standing still, so that
 /// the scan stays as skewed as the first one is.
-FilterState displaced(const FirstScan& first, const SE3& turned, const Eigen::Vector3d& d,
-                      double sigma_m) {
+FilterState displaced(const FirstScan& first, const SE3& turned, const Eigen::Vector3d& d) {
   FilterState state = first.state;
   state.T_map_body = {turned.rotation, first.state.T_map_body.translation + d};
   state.v_map.setZero();
   state.P.setZero();
-  set_sigma(state, FilterState::kP, sigma_m);
+  set_sigma(state, FilterState::kP, kSearchSigmaM);
+  state.P(FilterState::kP + 2, FilterState::kP + 2) = kClimbSigmaM * kClimbSigmaM;
   set_sigma(state, FilterState::kR, 0.01);
   set_sigma(state, FilterState::kV, 1e-3);
   set_sigma(state, FilterState::kBa, 1e-3);
@@ -99,7 +102,8 @@ void begin_map(const FirstScan& first, const Eigen::Vector3d& gravity, LocalMap&
 
 FirstMotion find_first_motion(FirstScan& first, const filter::SelectedScan& second,
                               TimeNs second_end, double fastest_m_s, const Eigen::Vector3d& gravity,
-                              const filter::UpdateOptions& options, WorkerPool& pool, LocalMap& map,
+                              const filter::UpdateOptions& options,
+                              const filter::ScanPairing& pairing, WorkerPool& pool, LocalMap& map,
                               filter::UpdateWorkspace& work) {
   const double dt = to_seconds(second_end - first.state.t);
   const Eigen::Vector3d guess = dt * first.state.v_map;
@@ -109,25 +113,31 @@ FirstMotion find_first_motion(FirstScan& first, const filter::SelectedScan& seco
   filter::UpdateOptions few_steps = options;
   few_steps.max_iterations = 5;
   const filter::SelectedScan few = thinned(second);
-  Eigen::Vector3d way;
-  const auto agreeing = [&](const Eigen::Vector3d& d, double sigma_m) {
-    const FilterState prior = displaced(first, turned, d, sigma_m);
-    FilterState state = prior;
-    const auto result =
-        filter::update_with_scan(map, few, gravity, few_steps, pool, work, prior, state, nullptr);
-    way = state.T_map_body.translation - first.state.T_map_body.translation;
-    return result.usable ? result.equations.weight : 0.0;
+  FilterState state;
+  const auto cost_of = [&](const Eigen::Vector3d& d) {
+    const FilterState prior = displaced(first, turned, d);
+    state = prior;
+    const auto result = filter::update_with_scan(pairing, few, gravity, few_steps, pool, work,
+                                                 prior, state, nullptr);
+    const auto n = static_cast<double>(few.selected.size());
+    if (!result.usable || result.equations.weight < kLeastShare * n) return kNothing;
+    // Points without a pair cost as much as those that are far off.
+    const double most = few_steps.robust_scale * few_steps.robust_scale;
+    return result.equations.cost + most * (n - result.equations.pairs);
   };
-  const double resting = agreeing(Eigen::Vector3d::Zero(), kRestSigmaM);
-  double best = std::max(resting, kLeastShare * static_cast<double>(few.selected.size()));
-  FirstMotion motion = resting < best ? FirstMotion::kNone : FirstMotion::kRests;
+  double least = kNothing;
+  FirstMotion motion = FirstMotion::kNone;
   Eigen::Vector3d best_way = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& d : displacements(guess, dt * fastest_m_s)) {
-    const double weight = agreeing(d, kSearchSigmaM);
-    if (weight < kBetter * best) continue;
-    best = weight;
-    best_way = way;
+    const double cost = cost_of(d);
+    if (cost >= kNothing || cost > least - kBetter) continue;
+    least = cost;
+    best_way = state.T_map_body.translation - first.state.T_map_body.translation;
     motion = FirstMotion::kMoves;
+    const Eigen::Matrix3d P = state.P.topLeftCorner<3, 3>();
+    if (best_way.dot(P.ldlt().solve(best_way)) > kFelt) continue;
+    motion = FirstMotion::kRests;
+    best_way.setZero();
   }
   first.state.v_map = best_way / dt;
   begin_map(first, gravity, map, work);

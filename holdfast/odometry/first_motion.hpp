@@ -1,7 +1,7 @@
 #pragma once
 
 #include "holdfast/filter/scan_update.hpp"
-#include "holdfast/odometry/local_map.hpp"
+#include "holdfast/odometry/surroundings/local_map.hpp"
 
 namespace holdfast::odometry {
 
@@ -30,10 +30,12 @@ enum class FirstMotion {
 /// second one; set in `first.state`. Neither scan can be deskewed without it, but both are skewed
 /// alike while the robot goes on as it does: so the second is matched to the first with both left
 /// skewed, from a pattern of displacements up to `fastest_m_s`, and the slowest motion stands that
-/// no other explains better; rest before all. Leaves a map of that motion.
+/// no other explains better; rest before all. `pairing` pairs with `map`; leaves a map of that
+/// motion.
 FirstMotion find_first_motion(FirstScan& first, const filter::SelectedScan& second,
                               TimeNs second_end, double fastest_m_s, const Eigen::Vector3d& gravity,
-                              const filter::UpdateOptions& options, WorkerPool& pool, LocalMap& map,
+                              const filter::UpdateOptions& options,
+                              const filter::ScanPairing& pairing, WorkerPool& pool, LocalMap& map,
                               filter::UpdateWorkspace& work);
 
 }  // namespace holdfast::odometry

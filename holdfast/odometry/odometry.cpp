@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "holdfast/odometry/local_pairing.hpp"
+#include "holdfast/odometry/surroundings/local_pairing.hpp"
+#include "holdfast/odometry/surroundings/sight_lines.hpp"
 #include "holdfast/registration/degeneracy.hpp"
 
 namespace holdfast::odometry {
@@ -13,7 +14,6 @@ namespace {
 using filter::FilterState;
 using filter::UpdateResult;
 
-constexpr TimeNs kImuMemory = 2 * kSecond;
 constexpr int kFirstKeyframes = 5;    // scans taken at the start though the robot rests
 constexpr double kSkewToldM = 0.005;  // skew that is worth being estimated
 constexpr double kCoarseFromM = 0.1;  // uncertainty from which coarse planes are asked
@@ -25,13 +25,15 @@ constexpr double kGyroBiasJump = 0.03;  // rad/s
 constexpr double kFewOfUsual = 0.6;     // share of inliers, by the usual one, that is few
 constexpr int kContradictions = 3;      // scans in a row until the odometry counts as broken
 constexpr double kFitsBetter = 1.02;
+constexpr double kFewToLookThrough = 0.8;  // likewise, if the scan looks through walls
+constexpr double kThroughWalls = 0.04;     // share of points behind walls, above the usual
+constexpr int kLookEvery = 5;              // scans, while all is as usual
+constexpr std::size_t kSightLines = 200;
 constexpr double kShareMemory = 0.05;
-constexpr std::size_t kEnoughPoints = 300;    // to contradict anything
-constexpr double kLongestFirstWayM = 3.0;     // between the first two scans
-constexpr double kAccelerationAtStart = 0.3;  // m/s^2, that levelling takes for gravity
-constexpr double kNormalSigma = 0.005;        // rad, common to the normals of a scan
-constexpr double kLocalSeconds = 2.0;         // for which a scan meets what was seen before
-constexpr double kFirstSpeedSigma = 0.5;      // m/s, of the way between two scans
+constexpr std::size_t kEnoughPoints = 300;  // to contradict anything
+constexpr double kNormalSigma = 0.005;      // rad, common to the normals of a scan
+constexpr double kLocalSeconds = 2.0;       // for which a scan meets what was seen before
+constexpr int kSettledKeyframes = 10;       // from which it is
 
 double largest_sigma(const Eigen::Matrix3d& P) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(P, Eigen::EigenvaluesOnly);
@@ -46,10 +48,6 @@ preprocess::ScanSelectionConfig selection_of(const Odometry::Setup& setup) {
   preprocess::ScanSelectionConfig selection = setup.selection;
   selection.max_points = std::min(selection.max_points, setup.odometry.max_points);
   return selection;
-}
-
-void set_sigma(FilterState& state, int offset, double sigma) {
-  state.P.diagonal().segment<3>(offset).setConstant(sigma * sigma);
 }
 
 }  // namespace
@@ -119,90 +117,6 @@ bool Odometry::prepare(const Scan& scan, StageClock& clock, OdometryReport& repo
   imu_.segment(scan.stamp, scan.end_time, scan_.imu);
   clock.book(Stage::kSelect);
   return true;
-}
-
-/// The attitude in which the readings up to the end of the first scan point against gravity.
-void Odometry::level(const Scan& scan) {
-  imu_.segment(scan.end_time - kImuMemory, scan.end_time, segment_);
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  double count = 0;
-  for (const ImuSample& s : segment_.samples) {
-    if (s.t < segment_.measured_begin) continue;
-    force += (s.accel_m_s2 - force) / ++count;
-  }
-  const Eigen::Vector3d up = force.normalized();
-  // x of `odom` is the body's x, seen from above.
-  Eigen::Vector3d x = Eigen::Vector3d::UnitX() - up.x() * up;
-  if (x.norm() < 1e-3) x = Eigen::Vector3d::UnitY() - up.y() * up;
-  x.normalize();
-  Eigen::Matrix3d R_odom_body;
-  R_odom_body << x.transpose(), up.cross(x).transpose(), up.transpose();
-  state_ = FilterState{};
-  state_.t = scan.end_time;
-  state_.T_map_body.rotation = Eigen::Quaterniond(R_odom_body).normalized();
-  state_.P.setZero();
-  set_sigma(state_, FilterState::kP, 1e-4);
-  set_sigma(state_, FilterState::kR, 1e-5);
-  set_sigma(state_, FilterState::kV, setup_.fastest_m_s);
-  set_sigma(state_, FilterState::kBa, 0.1);
-  set_sigma(state_, FilterState::kBg, 0.02);
-  gravity_.begin(force, kAccelerationAtStart, setup_.gravity_m_s2, state_);
-}
-
-/// A local map begins with the first scan that has returns.
-void Odometry::wait_for_returns(OdometryReport& report) {
-  phase_ = Phase::kWaiting;
-  report.step.state = State::kDeadReckoning;
-  if (scan_.selected.empty()) {
-    report.step.reason = "no returns";
-    return;
-  }
-  keyframes_ = contradictions_ = 0;
-  usual_share_ = 0;
-  drift_.setZero();
-  // The new map is where the robot is; only velocity and biases are uncertain.
-  const auto biases = state_.biases();
-  const Eigen::Matrix3d P_v = state_.P.block<3, 3>(FilterState::kV, FilterState::kV);
-  state_.P.setZero();
-  set_sigma(state_, FilterState::kP, 1e-4);
-  set_sigma(state_, FilterState::kR, 1e-5);
-  state_.P.block<3, 3>(FilterState::kV, FilterState::kV) = P_v;
-  state_.set_biases(biases);
-  gravity_.forget_pose();
-  first_.keep(scan_, state_);
-  last_surprise_ = report.step.pose_time;
-  phase_ = Phase::kFirstScan;
-  report.step.state = State::kTracking;
-  if (!report.broke) report.step.reason = "first scan of a local map";
-}
-
-void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
-  const double dt = to_seconds(report.step.pose_time - state_.t);
-  FirstMotion motion = FirstMotion::kNone;
-  if (!scan_.selected.empty() && dt * setup_.fastest_m_s < kLongestFirstWayM) {
-    motion = find_first_motion(first_, scan_, report.step.pose_time, setup_.fastest_m_s,
-                               gravity_.value(), options(), pool_, map_, work_);
-  }
-  clock.book(Stage::kStart);
-  if (motion == FirstMotion::kNone) {
-    predict(report.step.pose_time, report);
-    wait_for_returns(report);
-    return;
-  }
-  if (motion == FirstMotion::kRests && epoch_ == 0) rest_.begin();
-  state_ = first_.state;
-  set_sigma(state_, FilterState::kV, kFirstSpeedSigma);
-  const Passage passage = pass(report);
-  UpdateResult update = correct(clock);
-  if (update.usable) {
-    // Once more with the better velocity, which moved the points of both scans.
-    first_.state.v_map += state_.v_map - passage.predicted.v_map;
-    begin_map(first_, gravity_.value(), map_, work_);
-    update = correct_at(0, passage.predicted, clock);
-  }
-  phase_ = Phase::kRunning;
-  last_keyframe_ = passage.before.T_map_body;
-  accept(update, passage, clock, report);
 }
 
 /// Carries the state to `to`; returns the covariance of the errors there and here.
@@ -276,13 +190,22 @@ double Odometry::surprise(const FilterState& predicted) const {
   return moved.dot(predicted.P.topLeftCorner<6, 6>().ldlt().solve(moved));
 }
 
-/// The scan fits neither the local map nor the prediction. A crowd, or a new room, only does the
-/// former.
-bool Odometry::contradicted(const UpdateResult& update, double surprise) const {
+/// The scan fits neither the local map nor the prediction, or looks through walls. A crowd, or a
+/// new room, only takes points away.
+bool Odometry::contradicted(const UpdateResult& update, double surprise) {
   if (scan_.selected.size() < kEnoughPoints) return false;
   if (!update.usable) return true;
-  const double share = update.equations.weight / static_cast<double>(scan_.selected.size());
-  return surprise > kSurprise && share < kFewOfUsual * usual_share_;
+  const double share =
+      update.equations.weight / static_cast<double>(scan_.selected.size()) / usual_share_;
+  const bool few = share < kFewToLookThrough;
+  bool through_walls = false;
+  if (few || scan_number_ % kLookEvery == 0) {
+    const double through = share_seen_through(map_, work_.points, work_.pairs, state_.T_map_body,
+                                              scan_.T_body_lidar.translation, kSightLines);
+    through_walls = few && through > kThroughWalls + 3.0 * usual_through_;
+    if (!few) usual_through_ += kLookEvery * kShareMemory * (through - usual_through_);
+  }
+  return through_walls || (surprise > kSurprise && share < kFewOfUsual);
 }
 
 /// A bias may have jumped, or the IMU may be worse than its configured noise: does the scan fit
@@ -369,7 +292,9 @@ void Odometry::extend_map() {
       turn < setup_.odometry.keyframe_deg * std::numbers::pi / 180.0) {
     return;
   }
-  map_.insert(work_.points.points, state_.T_map_body, scan_.T_body_lidar.translation);
+  if (keyframes_ == kSettledKeyframes) map_.set_least_lines(kLinesOfAPlane);
+  map_.insert(work_.points.points, state_.T_map_body, scan_.T_body_lidar.translation,
+              static_cast<std::size_t>(setup_.odometry.max_inserted), scan_number_);
   last_keyframe_ = state_.T_map_body;
   ++keyframes_;
 }

@@ -65,6 +65,9 @@ class Odometry {
   const preprocess::ImuBuffer& imu() const { return imu_; }
 
  private:
+  static constexpr TimeNs kImuMemory = 2 * kSecond;
+  static constexpr int kLinesOfAPlane = 2;  ///< once the motion is known well
+
   enum class Phase { kNothing, kWaiting, kFirstScan, kRunning };
 
   /// From one scan to the next: the state there, and carried here by the IMU.
@@ -89,7 +92,7 @@ class Odometry {
   filter::UpdateResult release_biases(const filter::UpdateResult& update, Passage& passage,
                                       StageClock& clock, OdometryReport& report);
   double surprise(const filter::FilterState& predicted) const;
-  bool contradicted(const filter::UpdateResult& update, double surprise) const;
+  bool contradicted(const filter::UpdateResult& update, double surprise);
   void accept(const filter::UpdateResult& update, const Passage& passage, StageClock& clock,
               OdometryReport& report);
   void extend_map();
@@ -112,9 +115,10 @@ class Odometry {
   Phase phase_ = Phase::kNothing;
   std::uint64_t scan_number_ = 0;
   int epoch_ = 0;
-  int keyframes_ = 0;       ///< of this epoch
-  int contradictions_ = 0;  ///< scans in a row
-  double usual_share_ = 0;  ///< of inliers, running mean
+  int keyframes_ = 0;         ///< of this epoch
+  int contradictions_ = 0;    ///< scans in a row
+  double usual_share_ = 0;    ///< of inliers, running mean
+  double usual_through_ = 0;  ///< of points behind walls, likewise
   SE3 last_keyframe_;
   Matrix6d drift_ = Matrix6d::Zero();  ///< covariance of T_odom_body since the epoch began
   double sigma_at_scan_m_ = 0;         ///< position, when a scan last told it

@@ -1,12 +1,13 @@
 #pragma once
 
 #include "holdfast/core/fields.hpp"
-#include "holdfast/odometry/local_map.hpp"
+#include "holdfast/odometry/surroundings/local_map_config.hpp"
 
 namespace holdfast::odometry {
 
 struct OdometryConfig {
   int max_points = 6000;
+  int max_inserted = 3000;
   double keyframe_m = 0.3;
   double keyframe_deg = 5.0;
   double surface_sigma_m = 0.005;
@@ -23,6 +24,8 @@ struct OdometryConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("max_points", self.max_points,
           FieldDoc{"points of a scan that are matched with the local map", 100, 1000000});
+    visit("max_inserted", self.max_inserted,
+          FieldDoc{"of them that are added to the local map", 100, 1000000});
     visit("keyframe_m", self.keyframe_m,
           FieldDoc{"way after which a scan is added to the local map", 0.01, 10.0});
     visit("keyframe_deg", self.keyframe_deg, FieldDoc{"or turn after which it is", 0.1, 90.0});

@@ -1,4 +1,4 @@
-#include "holdfast/odometry/local_map.hpp"
+#include "holdfast/odometry/surroundings/local_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,51 +14,55 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr double kNoise = 0.02;
+constexpr double kHalf = 0.12;  // of the smallest cells, nearly
 
-/// Points on the plane n . x = d within a cell of 0.5 m around `middle`, with noise along n.
+/// Points on a square of the plane through `middle` with normal `n`, with noise along n.
 std::vector<Vector3f> plane_points(const Vector3d& n, const Vector3d& middle, int count,
-                                   std::uint64_t seed) {
+                                   std::uint64_t seed, double half = kHalf) {
   RandomStream random(seed, "plane");
   const Vector3d u = n.unitOrthogonal();
   const Vector3d v = n.cross(u);
   std::vector<Vector3f> points;
   for (int i = 0; i < count; ++i) {
-    const Vector3d p = middle + random.uniform(-0.2, 0.2) * u + random.uniform(-0.2, 0.2) * v +
+    const Vector3d p = middle + random.uniform(-half, half) * u + random.uniform(-half, half) * v +
                        random.normal(0, kNoise) * n;
     points.push_back(p.cast<float>());
   }
   return points;
 }
 
-Vector3d kMiddle() { return {2.25, 1.25, 0.25}; }  // the middle of a cell
+Vector3d kMiddle() { return {2.125, 1.125, 0.125}; }  // the middle of a cell of the smallest size
+Vector3d kSeenFrom() { return kMiddle() + Vector3d(1.5, 1.0, 2.5); }
 
 TEST(LocalMap, APlaneIsAsGoodAsItSaysItIs) {
-  const Vector3d n = Vector3d(0.2, -0.1, 1).normalized();
+  const Vector3d n = Vector3d(0.05, -0.03, 1).normalized();
+  constexpr double kLargeHalf = 0.48;  // of the largest cells, which answer
   double squares = 0, sum_sigma = 0;
   constexpr int kDraws = 400;
   LocalMap map({}, kNoise);
   for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
     // Each draw in a cell of its own.
-    const Vector3d middle = kMiddle() + Vector3d(2.0 * static_cast<double>(seed % 20),
-                                                 static_cast<double>(seed / 20), 0);
-    map.insert(plane_points(n, middle, 60, seed), {}, middle);
+    const Vector3d middle = Vector3d(0.5, 0.5, 0.5) + Vector3d(2.0 * static_cast<double>(seed % 20),
+                                                               static_cast<double>(seed / 20), 0);
+    map.insert(plane_points(n, middle, 150, seed, kLargeHalf), {}, middle + 3.0 * n);
     const auto hit = map.find(0, middle.cast<float>());
     ASSERT_NE(hit.surface, nullptr);
     ASSERT_EQ(hit.surface->kind, map::SurfaceKind::kPlane);
     // The error of the plane somewhere in the cell, as a matched point meets it.
     RandomStream random(seed, "where");
     const Vector3d u = n.unitOrthogonal();
-    const Vector3d at =
-        middle + random.uniform(-0.25, 0.25) * u + random.uniform(-0.25, 0.25) * n.cross(u);
+    const Vector3d at = middle + random.uniform(-kLargeHalf, kLargeHalf) * u +
+                        random.uniform(-kLargeHalf, kLargeHalf) * n.cross(u);
     const double error = hit.surface->normal.cast<double>().dot(
         at - (hit.corner + hit.surface->center).cast<double>());
     squares += error * error / (hit.surface->sigma_m * hit.surface->sigma_m);
     sum_sigma += hit.surface->sigma_m;
   }
-  // Mean of squares of unit variance, of 400 draws: 1 +- 0.07; the extent of the points is a little
-  // smaller than the cell.
-  EXPECT_NEAR(squares / kDraws, 1.0, 0.35);
-  EXPECT_LT(sum_sigma / kDraws, 0.01);
+  // Mean of squares of unit variance. The square lies askew in the cell, which cuts its corners off
+  // while errors are asked there too; and the last points wait for the next fit.
+  EXPECT_GT(squares / kDraws, 0.7);
+  EXPECT_LT(squares / kDraws, 1.7);
+  EXPECT_LT(sum_sigma / kDraws, 0.005);
 }
 
 TEST(LocalMap, PointsOnALineAreNoPlane) {
@@ -66,27 +70,32 @@ TEST(LocalMap, PointsOnALineAreNoPlane) {
   RandomStream random(1, "line");
   std::vector<Vector3f> points;
   for (int i = 0; i < 80; ++i) {
-    points.push_back((kMiddle() + Vector3d(random.uniform(-0.2, 0.2), random.normal(0, 0.004),
+    points.push_back((kMiddle() + Vector3d(random.uniform(-kHalf, kHalf), random.normal(0, 0.004),
                                            random.normal(0, 0.004)))
                          .cast<float>());
   }
-  map.insert(points, {}, kMiddle());
+  map.insert(points, {}, kSeenFrom());
   EXPECT_EQ(map.find(0, kMiddle().cast<float>()).surface, nullptr);
 }
 
-TEST(LocalMap, TheCellOfACornerIsClutter) {
+TEST(LocalMap, APlaneThroughTheLidarIsTheFanOfABeamAndNoWall) {
   LocalMap map({}, kNoise);
-  map.insert(plane_points(Vector3d::UnitX(), kMiddle(), 100, 1), {}, kMiddle());
-  map.insert(plane_points(Vector3d::UnitZ(), kMiddle(), 100, 2), {}, kMiddle());
-  const auto hit = map.find(0, kMiddle().cast<float>());
-  ASSERT_NE(hit.surface, nullptr);
-  EXPECT_EQ(hit.surface->kind, map::SurfaceKind::kClutter);
+  const Vector3d n = Vector3d(0.3, 0.2, 1).normalized();
+  map.insert(plane_points(n, kMiddle(), 100, 1), {}, kMiddle() + 3.0 * n.unitOrthogonal());
+  EXPECT_EQ(map.find(0, kMiddle().cast<float>()).surface, nullptr);
+}
+
+TEST(LocalMap, TheCellOfACornerIsNoPlane) {
+  LocalMap map({}, kNoise);
+  map.insert(plane_points(Vector3d::UnitX(), kMiddle(), 100, 1), {}, kSeenFrom());
+  map.insert(plane_points(Vector3d::UnitZ(), kMiddle(), 100, 2), {}, kSeenFrom());
+  EXPECT_EQ(map.find(0, kMiddle().cast<float>()).surface, nullptr);
 }
 
 TEST(LocalMap, NothingIsKnownWhereNothingWasSeen) {
   LocalMap map({}, kNoise);
   EXPECT_EQ(map.find(0, {1, 2, 3}).surface, nullptr);
-  map.insert(plane_points(Vector3d::UnitZ(), kMiddle(), 100, 1), {}, kMiddle());
+  map.insert(plane_points(Vector3d::UnitZ(), kMiddle(), 100, 1), {}, kSeenFrom());
   EXPECT_EQ(map.find(0, {-1, 2, 3}).surface, nullptr);
   EXPECT_NE(map.find(0, kMiddle().cast<float>()).surface, nullptr);
   map.clear();
@@ -99,8 +108,8 @@ TEST(LocalMap, APlaneFarFromTheOriginIsAsGoodAsOneNearby) {
   // A multiple of the cells, so that the points fall into their cells alike.
   const SE3 away{Eigen::Quaterniond::Identity(), {40'000, -30'000, 12}};
   far.follow(away.translation);
-  near.insert(points, {}, kMiddle());
-  far.insert(points, away, kMiddle());
+  near.insert(points, {}, kSeenFrom());
+  far.insert(points, away, kSeenFrom());
   const auto a = near.find(0, kMiddle().cast<float>());
   const Vector3f p = (kMiddle() + away.translation - far.anchor()).cast<float>();
   const auto b = far.find(0, p);
@@ -113,7 +122,7 @@ TEST(LocalMap, APlaneFarFromTheOriginIsAsGoodAsOneNearby) {
 
 TEST(LocalMap, AfterTheAnchorHasMovedThePlanesAreWhereTheyWere) {
   LocalMap map({}, kNoise);
-  map.insert(plane_points(Vector3d::UnitZ(), kMiddle(), 100, 1), {}, kMiddle());
+  map.insert(plane_points(Vector3d::UnitZ(), kMiddle(), 100, 1), {}, kSeenFrom());
   const auto before = map.find(0, kMiddle().cast<float>());
   const Vector3d centre = (before.corner + before.surface->center).cast<double>() + map.anchor();
   map.follow({-50, 10, 5});
@@ -126,10 +135,10 @@ TEST(LocalMap, AfterTheAnchorHasMovedThePlanesAreWhereTheyWere) {
 
 TEST(LocalMap, AFullCellNoLongerFollowsItsPoints) {
   LocalMap map({}, kNoise);
-  map.insert(plane_points(Vector3d::UnitZ(), kMiddle(), 400, 1), {}, kMiddle());
+  map.insert(plane_points(Vector3d::UnitZ(), kMiddle(), 400, 1), {}, kSeenFrom());
   const map::Surface before = *map.find(0, kMiddle().cast<float>()).surface;
   map.insert(plane_points(Vector3d::UnitZ(), kMiddle() + Vector3d(0, 0, 0.01), 400, 2), {},
-             kMiddle());
+             kSeenFrom());
   EXPECT_EQ(map.find(0, kMiddle().cast<float>()).surface->center, before.center);
 }
 

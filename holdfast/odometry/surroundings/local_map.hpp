@@ -4,39 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "holdfast/core/fields.hpp"
-#include "holdfast/odometry/cell_table.hpp"
+#include "holdfast/odometry/surroundings/cell_table.hpp"
+#include "holdfast/odometry/surroundings/local_map_config.hpp"
 #include "holdfast/registration/correspondences.hpp"
 
 namespace holdfast::odometry {
-
-struct LocalMapConfig {
-  double cell_m = 0.25;
-  double radius_m = 80.0;
-  double noise_slack = 1.2;
-  double plane_sigma_m = 0.02;
-  double tilt_sigma_rad = 0.05;
-  int full_weight = 200;
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("cell_m", self.cell_m,
-          FieldDoc{"side of the smallest cells of the local map; the others have twice and four "
-                   "times that",
-                   0.05, 5.0});
-    visit("radius_m", self.radius_m, FieldDoc{"cells farther away are forgotten", 10.0, 300.0});
-    visit("noise_slack", self.noise_slack,
-          FieldDoc{"thickness of a plane, by the noise of a range, above which it is none", 1.0,
-                   10.0});
-    visit("plane_sigma_m", self.plane_sigma_m,
-          FieldDoc{"standard error up to which a plane is worth being matched", 1e-3, 1.0});
-    visit("tilt_sigma_rad", self.tilt_sigma_rad, FieldDoc{"and of its normal", 1e-3, 1.0});
-    visit("full_weight", self.full_weight,
-          FieldDoc{"points after which a cell is left as it is, so that the map does not follow "
-                   "the odometry's own errors",
-                   10, 100000});
-  }
-};
 
 /// The surroundings of the last tens of metres as planes in cubic cells, made from the odometry's
 /// own scans. Each cell keeps running moments of its points; its plane is fitted anew when they
@@ -79,14 +51,20 @@ class LocalMap {
 
   /// Adds points of a scan: deskewed, in the body frame at `T_odom_body`; `p_body_lidar` is where
   /// they were seen from. Far points count less: an error of the rotation moves them more.
+  /// Of more than `most` points every so many are taken, others with another `number`.
   void insert(const std::vector<Eigen::Vector3f>& points, const SE3& T_odom_body,
-              const Eigen::Vector3d& p_body_lidar);
+              const Eigen::Vector3d& p_body_lidar, std::size_t most = SIZE_MAX,
+              std::uint64_t number = 0);
 
   /// Moves the anchor to the robot and forgets some of the cells that are out of reach; call once a
   /// scan.
   void follow(const Eigen::Vector3d& p_odom);
 
   void clear();
+
+  /// Number of lines (beams, from places apart) that a plane needs from now on: two lie on a plane
+  /// whatever they were drawn on, which matters while nothing else tells the motion.
+  void set_least_lines(int lines) { least_lines_ = lines; }
 
   /// Cells in use of the size `i`.
   std::size_t cells(std::size_t i) const { return layers_[i].used(); }
@@ -139,6 +117,7 @@ class LocalMap {
   Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d stood_ = Eigen::Vector3d::Constant(1e9);  ///< LiDAR when places were last counted
   std::uint32_t place_ = 0;
+  int least_lines_ = 2;
   std::uint64_t refused_ = 0;
 };
 

@@ -1,4 +1,4 @@
-#include "holdfast/odometry/local_pairing.hpp"
+#include "holdfast/odometry/surroundings/local_pairing.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "holdfast/odometry/local_map.hpp"
+#include "holdfast/odometry/surroundings/local_map.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace holdfast::odometry {
 namespace {
 
 constexpr std::array<std::size_t, LocalMap::kSizes> kCapacity = {1U << 17, 1U << 16, 1U << 15};
-constexpr std::size_t kSweepCells = 4096;  // looked at in one scan
+constexpr std::size_t kSweepScans = 64;    // until all cells have been looked at
 constexpr double kAnchorReachM = 32.0;     // from the robot; float is good to 4 micrometres there
 constexpr float kRangeOfHalfWeightM = 40;  // 0.5 mrad are as much as the noise of a range
 constexpr float kFirstFit = 6;
@@ -28,8 +28,7 @@ constexpr float kFanM = 0.25F;           // nearer to the LiDAR no plane passes
 constexpr float kFanSine = 0.04F;        // nor at a smaller angle to the rays
 constexpr float kBeamsPerSlope = 57.0F;  // beams are told apart at a degree
 constexpr double kOtherPlaceM = 0.2;     // from which the lines are others
-constexpr int kLeastLines = 2;
-constexpr float kAngleSigma = 0.0005F;  // error of the rotation, rad
+constexpr float kAngleSigma = 0.0005F;   // error of the rotation, rad
 constexpr double kLeastRadiusM = 10.0;
 constexpr double kNearlyFull = 0.95, kRoomy = 0.7;
 
@@ -65,7 +64,7 @@ void LocalMap::clear() {
 }
 
 void LocalMap::insert(const std::vector<Eigen::Vector3f>& points, const SE3& T_odom_body,
-                      const Eigen::Vector3d& p_body_lidar) {
+                      const Eigen::Vector3d& p_body_lidar, std::size_t most, std::uint64_t number) {
   const Eigen::Matrix3f R = T_odom_body.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f t = (T_odom_body.translation - anchor_).cast<float>();
   const Eigen::Vector3f lidar = p_body_lidar.cast<float>();
@@ -76,7 +75,9 @@ void LocalMap::insert(const std::vector<Eigen::Vector3f>& points, const SE3& T_o
     ++place_;
   }
   constexpr float kHalf = 1.0F / (kRangeOfHalfWeightM * kRangeOfHalfWeightM);
-  for (const Eigen::Vector3f& q : points) {
+  const std::size_t stride = points.size() / most + (points.size() % most != 0 ? 1 : 0);
+  for (std::size_t i = stride > 1 ? number % stride : 0; i < points.size(); i += stride) {
+    const Eigen::Vector3f& q = points[i];
     const Eigen::Vector3f ray = q - lidar;
     const float weight = 1.0F / (1.0F + ray.squaredNorm() * kHalf);
     const float slope = ray.z() / ray.head<2>().norm() * kBeamsPerSlope;
@@ -148,7 +149,7 @@ void LocalMap::fit(const Layer& layer, Cell& cell) const {
                       kAngleSigma * kAngleSigma * ray.squaredNorm();
   const auto slack = static_cast<float>(config_.noise_slack * config_.noise_slack);
   cell.is_plane = false;
-  if (std::popcount(cell.lines) < kLeastLines) return;
+  if (std::popcount(cell.lines) < least_lines_) return;
   if (variance[0] > slack * noise * (1.0F + 2.0F * std::sqrt(2.0F / n))) return;
   if (past < kFanM || past < kFanSine * ray.norm()) return;
   // Error of the plane over the cell: of its offset, and of its two tilts at a typical lever.
@@ -187,7 +188,7 @@ void LocalMap::forget_far(Layer& layer, const Eigen::Vector3d& p_odom) {
   if (share > kNearlyFull) layer.radius_m = std::max(kLeastRadiusM, 0.95 * layer.radius_m);
   if (share < kRoomy) layer.radius_m = std::min(config_.radius_m, 1.02 * layer.radius_m);
   const double most = layer.radius_m * layer.radius_m;
-  for (std::size_t k = 0; k < kSweepCells; ++k) {
+  for (std::size_t k = 0; k < layer.cells.size() / kSweepScans; ++k) {
     layer.swept = layer.swept + 1 < layer.cells.size() ? layer.swept + 1 : 0;
     Cell& cell = layer.cells[layer.swept];
     if (!cell.in_use) continue;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "holdfast/filter/scan_update.hpp"
-#include "holdfast/odometry/local_map.hpp"
+#include "holdfast/odometry/surroundings/local_map.hpp"
 
 namespace holdfast::odometry {
 

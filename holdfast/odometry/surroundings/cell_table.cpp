@@ -1,4 +1,4 @@
-#include "holdfast/odometry/cell_table.hpp"
+#include "holdfast/odometry/surroundings/cell_table.hpp"
 
 #include <bit>
 #include <cassert>
