@@ -10,6 +10,9 @@ using filter::FilterState;
 
 constexpr double kStepM = 0.3;
 constexpr double kSearchSigmaM = 0.2;
+constexpr double kFirstMapSigmaM = 0.005;  // error of a map of one scan, common to its points
+constexpr double kRestSigmaM = 0.003;
+constexpr double kTurnSigma = 0.003;   // rad, of the gyroscope over a scan
 constexpr double kClimbSigmaM = 0.03;  // likewise upwards: robots hardly climb
 constexpr double kFelt = 30.0;         // squared sigmas from which a way is none of the noise
 constexpr std::size_t kSearchPoints = 1500;
@@ -40,14 +43,16 @@ void set_sigma(FilterState& state, int offset, double sigma) {
 
 /// Where the second scan ends, as the gyroscope turns, displaced by `d` and standing still, so that
 /// the scan stays as skewed as the first one is.
-FilterState displaced(const FirstScan& first, const SE3& turned, const Eigen::Vector3d& d) {
+FilterState displaced(const FirstScan& first, const SE3& turned, const Eigen::Vector3d& d,
+                      double sigma_m) {
   FilterState state = first.state;
   state.T_map_body = {turned.rotation, first.state.T_map_body.translation + d};
   state.v_map.setZero();
   state.P.setZero();
-  set_sigma(state, FilterState::kP, kSearchSigmaM);
-  state.P(FilterState::kP + 2, FilterState::kP + 2) = kClimbSigmaM * kClimbSigmaM;
-  set_sigma(state, FilterState::kR, 0.01);
+  set_sigma(state, FilterState::kP, sigma_m);
+  const double climb_m = std::min(sigma_m, kClimbSigmaM);
+  state.P(FilterState::kP + 2, FilterState::kP + 2) = climb_m * climb_m;
+  set_sigma(state, FilterState::kR, kTurnSigma);
   set_sigma(state, FilterState::kV, 1e-3);
   set_sigma(state, FilterState::kBa, 1e-3);
   set_sigma(state, FilterState::kBg, 1e-4);
@@ -112,10 +117,11 @@ FirstMotion find_first_motion(FirstScan& first, const filter::SelectedScan& seco
   const SE3 turned = turned_by(second.imu, dt, first.state);
   filter::UpdateOptions few_steps = options;
   few_steps.max_iterations = 5;
+  few_steps.map_sigma_m = kFirstMapSigmaM;
   const filter::SelectedScan few = thinned(second);
   FilterState state;
-  const auto cost_of = [&](const Eigen::Vector3d& d) {
-    const FilterState prior = displaced(first, turned, d);
+  const auto cost_of = [&](const Eigen::Vector3d& d, double sigma_m) {
+    const FilterState prior = displaced(first, turned, d, sigma_m);
     state = prior;
     const auto result = filter::update_with_scan(pairing, few, gravity, few_steps, pool, work,
                                                  prior, state, nullptr);
@@ -125,17 +131,18 @@ FirstMotion find_first_motion(FirstScan& first, const filter::SelectedScan& seco
     const double most = few_steps.robust_scale * few_steps.robust_scale;
     return result.equations.cost + most * (n - result.equations.pairs);
   };
+  const double resting = cost_of(Eigen::Vector3d::Zero(), kRestSigmaM);
   double least = kNothing;
   FirstMotion motion = FirstMotion::kNone;
   Eigen::Vector3d best_way = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& d : displacements(guess, dt * fastest_m_s)) {
-    const double cost = cost_of(d);
+    const double cost = cost_of(d, kSearchSigmaM);
     if (cost >= kNothing || cost > least - kBetter) continue;
     least = cost;
     best_way = state.T_map_body.translation - first.state.T_map_body.translation;
     motion = FirstMotion::kMoves;
     const Eigen::Matrix3d P = state.P.topLeftCorner<3, 3>();
-    if (best_way.dot(P.ldlt().solve(best_way)) > kFelt) continue;
+    if (best_way.dot(P.ldlt().solve(best_way)) > kFelt && cost < resting) continue;
     motion = FirstMotion::kRests;
     best_way.setZero();
   }

@@ -115,7 +115,7 @@ TEST_P(AtSpeed, TheWayIsThatOfTheTruthAlsoFromAStartOnTheMove) {
   EXPECT_NEAR(report.v_odom.norm(), GetParam(), 0.05);
 }
 
-INSTANTIATE_TEST_SUITE_P(MetresASecond, AtSpeed, ::testing::Values(0.5, 1.5, 6.0));
+INSTANTIATE_TEST_SUITE_P(MetresASecond, AtSpeed, ::testing::Values(0.2, 0.5, 1.5, 6.0));
 
 TEST(Odometry, IncrementsAreAsGoodAsTheySay) {
   double squares = 0, count = 0;
