@@ -139,7 +139,7 @@ void RowLinker::find_planes(const ScanRows& rows, const std::vector<WindowFit>& 
 /// The edge of a row that is nearest to `to`, within a window or the distance of some rows.
 const RowEdge* RowLinker::nearest(const std::vector<RowEdge>& edges, std::size_t row,
                                   const Vector3f& to) const {
-  if (row + 1 >= row_edges_.size()) return nullptr;  // also row -1
+  if (row >= row_edges_.size() || row + 1 == row_edges_.size()) return nullptr;  // also row -1
   const float reach = std::max(window_m_, kEdgeReach * to.norm());
   float least = reach * reach;
   const RowEdge* found = nullptr;

@@ -104,8 +104,8 @@ TEST(FitAtQuery, IsInvalidWithFewerThanTenEdgesOrTwentyPlanes) {
   for (const auto& [edges, planes, valid] :
        {std::tuple{10, 20, true}, std::tuple{9, 20, false}, std::tuple{10, 19, false}}) {
     FeatureClouds all = seen(room(0.3, 0, 2), kTruth), scan;
-    for (int i = 0; i < edges; ++i) scan.edges.push_back(all.edges[i * 31]);
-    for (int i = 0; i < planes; ++i) scan.planes.push_back(all.planes[i * 61]);
+    for (int i = 0; i < edges; ++i) scan.edges.push_back(all.edges[i * 31 % all.edges.size()]);
+    for (int i = 0; i < planes; ++i) scan.planes.push_back(all.planes[i * 61 % all.planes.size()]);
     const auto found = registration.align(scan, start);
     EXPECT_EQ(found.valid, valid) << edges << " edges, " << planes << " planes";
     if (!valid) {
