@@ -292,7 +292,7 @@ TEST(FitCell, ThePlanesOfAColumnExplainItsPoints) {
     }
   }
   // Cells that planes do not explain are clutter.
-  EXPECT_GT(explained, 0.8 * static_cast<double>(points.size()));
+  EXPECT_GT(explained, 0.9 * static_cast<double>(points.size()));
   // A plane is the mean of a band of three sigmas to each side: it lies between the tangent and the
   // chord of a segment that is 2 * 3 sigma deep.
   ASSERT_FALSE(depths.empty());

@@ -39,6 +39,7 @@ TEST(LocalMap, APlaneIsAsGoodAsItSaysItIs) {
   constexpr double kLargeHalf = 0.48;  // of the largest cells, which answer
   double squares = 0, sum_sigma = 0;
   constexpr int kDraws = 400;
+  int asked = 0;
   LocalMap map({}, kNoise);
   for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
     // Each draw in a cell of its own.
@@ -53,16 +54,17 @@ TEST(LocalMap, APlaneIsAsGoodAsItSaysItIs) {
     const Vector3d u = n.unitOrthogonal();
     const Vector3d at = middle + random.uniform(-kLargeHalf, kLargeHalf) * u +
                         random.uniform(-kLargeHalf, kLargeHalf) * n.cross(u);
+    if ((at - middle).cwiseAbs().maxCoeff() > 0.5) continue;  // the square lies askew in the cell
+    ++asked;
     const double error = hit.surface->normal.cast<double>().dot(
         at - (hit.corner + hit.surface->center).cast<double>());
     squares += error * error / (hit.surface->sigma_m * hit.surface->sigma_m);
     sum_sigma += hit.surface->sigma_m;
   }
-  // Mean of squares of unit variance. The square lies askew in the cell, which cuts its corners off
-  // while errors are asked there too; and the last points wait for the next fit.
-  EXPECT_GT(squares / kDraws, 0.7);
-  EXPECT_LT(squares / kDraws, 1.7);
-  EXPECT_LT(sum_sigma / kDraws, 0.005);
+  ASSERT_GT(asked, kDraws / 2);
+  // Mean of squares of unit variance, of some 300 draws: 1 +- 0.08.
+  EXPECT_NEAR(squares / asked, 1.0, 0.35);
+  EXPECT_LT(sum_sigma / asked, 0.005);
 }
 
 TEST(LocalMap, PointsOnALineAreNoPlane) {

@@ -136,7 +136,7 @@ TEST(Odometry, IncrementsAreAsGoodAsTheySay) {
       count += 6;
     }
   }
-  EXPECT_GT(squares / count, 0.25);
+  EXPECT_GT(squares / count, 0.5);
   EXPECT_LT(squares / count, 2.0);
 }
 
@@ -182,7 +182,7 @@ TEST(Odometry, ABlackoutIsBridgedByTheImu) {
     EXPECT_FALSE(report.broke);
     EXPECT_EQ(report.step.state == State::kDeadReckoning, dark);
     // Two seconds with a velocity that is 2 cm/s off and biases that are 0.01 m/s^2 off.
-    EXPECT_LT(journey.error_m(report, first, k), dark ? 0.06 : 2 * kDriftM) << "scan " << k;
+    EXPECT_LT(journey.error_m(report, first, k), dark ? 0.05 : 2 * kDriftM) << "scan " << k;
   }
 }
 
