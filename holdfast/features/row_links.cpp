@@ -20,7 +20,7 @@ constexpr float kEdgeReach = 0.1F;  // rad: rows of one edge are nearer than thi
 int azimuth_bin(const Vector3f& p) {
   const float along = p.x() / (std::abs(p.x()) + std::abs(p.y()) + 1e-12F);
   const float turn = p.y() < 0 ? 1.0F + along : 3.0F - along;
-  return std::min(static_cast<int>(turn * (kBins / 4)), kBins - 1);
+  return std::min(static_cast<int>(turn * (0.25F * kBins)), kBins - 1);
 }
 
 /// Part of `v` across the unit vector `t`.

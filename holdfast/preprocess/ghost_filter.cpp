@@ -15,7 +15,7 @@ constexpr float kWide = 4.0F;        // azimuth of company in another ring, in s
 std::size_t azimuth_bin(const Eigen::Vector3f& ray) {
   const float along = ray.x() / (std::abs(ray.x()) + std::abs(ray.y()) + 1e-12F);
   const float turn = ray.y() < 0 ? 1.0F + along : 3.0F - along;
-  return std::min(static_cast<std::size_t>(turn * (kBins / 4)), kBins - 1);
+  return std::min(static_cast<std::size_t>(turn * (0.25F * kBins)), kBins - 1);
 }
 
 }  // namespace
