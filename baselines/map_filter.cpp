@@ -238,6 +238,7 @@ void MapFilter::describe(const UpdateResult& update, StepReport& report) const {
   report.mean_abs_residual_m = e.weight > 0 ? e.abs_residual / e.weight : 0.0;
   report.sigma_trans_m = largest_sigma(state_.P, FilterState::kP);
   report.sigma_rot_rad = largest_sigma(state_.P, FilterState::kR);
+  report.pose_covariance = state_.P.topLeftCorner<6, 6>();
   if (update.usable) {
     report.weak_directions = registration::weak_directions(e.H, setup_.filter.weak_sigma_m);
   }

@@ -56,6 +56,9 @@ struct StepReport {
   std::vector<Eigen::Vector3d> weak_directions;  ///< unit vectors in the map frame
   double sigma_trans_m = 0;  ///< largest standard deviation of the position, any direction
   double sigma_rot_rad = 0;  ///< likewise of the rotation
+  /// Covariance of the error of T_map_body as [position in the map frame (m), rotation perturbed on
+  /// the right (rad)]; the two sigmas above are of its diagonal blocks. Zero: not estimated.
+  Eigen::Matrix<double, 6, 6> pose_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int odom_epoch = 0;
   TimeNs imu_held_ns = 0;  ///< part of the step for which the last IMU reading was held
   StageTimes times;

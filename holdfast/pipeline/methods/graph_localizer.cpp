@@ -258,6 +258,7 @@ void GraphLocalizer::describe(const Match& match, StepReport& report) const {
   report.mean_abs_residual_m = e.weight > 0 ? e.abs_residual / e.weight : 0.0;
   report.sigma_trans_m = largest_sigma(P, NodeState::kP);
   report.sigma_rot_rad = largest_sigma(P, NodeState::kR);
+  report.pose_covariance = P.topLeftCorner<6, 6>();
   if (match.usable)
     report.weak_directions = registration::weak_directions(e.H, setup_.start.filter.weak_sigma_m);
 }
