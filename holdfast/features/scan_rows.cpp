@@ -152,7 +152,7 @@ void RowSorter::rows_from_bins() {
 
 void RowSorter::order_by_azimuth(const Points& points) {
   const auto bin_of = [](const Eigen::Vector3f& p) {
-    return std::min(static_cast<std::size_t>(diamond_angle(p) * (kAzimuthBins / 4)),
+    return std::min(static_cast<std::size_t>(diamond_angle(p) * (0.25F * kAzimuthBins)),
                     static_cast<std::size_t>(kAzimuthBins - 1));
   };
   fill_.assign(kAzimuthBins + 1, 0);

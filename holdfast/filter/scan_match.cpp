@@ -3,22 +3,33 @@
 #include <algorithm>
 #include <array>
 
+#include "holdfast/registration/degeneracy.hpp"
+
 namespace holdfast::filter {
 namespace {
 
 using registration::kVelocity;
 using registration::NormalEquations;
 
+// Changes below which another pairing or deskewing would change nothing that matters.
 constexpr double kRepairM = 0.02;
 constexpr double kRepairRad = 0.002;
 constexpr double kRedeskewM = 0.002;
+// The robust loss starts wide and narrows: far from the optimum its narrow form hardly feels the
+// pairs that are off, and takes many small steps.
 constexpr std::array<double, ScanMatch::kCalls> kAnneal = {4.0, 2.0, 1.0};
 
-SE3 anchored(const SE3& T_map_body, const map::PriorMap& map) {
+SE3 anchored(const SE3& T_map_body, const ScanPairing& map) {
   return {T_map_body.rotation, T_map_body.translation - map.anchor()};
 }
 
 }  // namespace
+
+MapError map_error(const UpdateOptions& options, double span_s, const NormalEquations& equations) {
+  const double variance = options.map_sigma_m * options.map_sigma_m;
+  return {registration::feigned_offset(equations.H) + variance * Eigen::Matrix3d::Identity(),
+          options.map_sigma_rad, 2.0 * options.map_sigma_m / std::max(span_s, 1e-3)};
+}
 
 void ScanMatch::book(Stage stage) {
   if (clock_ != nullptr) clock_->book(stage);
@@ -42,8 +53,8 @@ void ScanMatch::deskew(const MatchState& x) {
 }
 
 void ScanMatch::pair(const MatchState& x) {
-  registration::associate(map_, anchored(x.T_map_body, map_), scan_.T_body_lidar.translation,
-                          work_.points, options_.association, pool_, work_.pairs);
+  map_.associate(anchored(x.T_map_body, map_), scan_.T_body_lidar.translation, work_.points,
+                 options_.association, pool_, work_.pairs);
   paired_ = x.T_map_body;
   book(Stage::kAssociate);
 }

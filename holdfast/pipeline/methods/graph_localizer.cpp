@@ -195,7 +195,8 @@ GraphLocalizer::Match GraphLocalizer::match(const NodeState& predicted, StageClo
 /// IMU, odometry and map together; the map residual is linearised anew in every iteration.
 GraphLocalizer::Match GraphLocalizer::match_finely(const filter::UpdateOptions& options,
                                                    StageClock& clock) {
-  filter::ScanMatch scan(*map_, scan_, options, pool_, work_, &clock);
+  const filter::PairingWith pairing(*map_);
+  filter::ScanMatch scan(pairing, scan_, options, pool_, work_, &clock);
   estimator::OptimiseOptions how;
   how.min_measurements = filter::ScanMatch::kCalls;
   how.max_measurements = options.max_iterations;
