@@ -1,19 +1,14 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 
 #include "apps/commands.hpp"
-#include "apps/log_account.hpp"
-#include "apps/progress_bar.hpp"
-#include "apps/run_options.hpp"
+#include "apps/log_run.hpp"
 #include "evaluation/report/report.hpp"
 #include "holdfast/map/prior_map.hpp"
 #include "holdfast/pipeline/localizer.hpp"
 #include "holdfast/pipeline/map_view.hpp"
 #include "holdfast/pipeline/run_files.hpp"
-#include "holdfast/pipeline/run_summary.hpp"
-#include "holdfast/pipeline/runner.hpp"
 
 namespace holdfast::apps {
 namespace {
@@ -22,20 +17,6 @@ struct Arguments {
   std::string log, map, out, initial_pose, method, truth, events;
   bool no_report = false;
   RunOptions run;
-};
-
-/// A run while it goes on.
-struct Run {
-  pipeline::RunFiles files;
-  pipeline::RunSummary summary;
-  ProgressBar bar{"localizing"};
-
-  Status on_step(const StepReport& report, double progress) {
-    summary.add(report);
-    bar.update(progress, fmt::format("{} scans, {}, {:.2f} ms a scan", summary.scans(),
-                                     to_string(report.state), report.times.total_ms));
-    return files.add(report);
-  }
 };
 
 pipeline::Config load_config(const Arguments& args) {
@@ -59,21 +40,6 @@ void print_result(const pipeline::RunSummary& summary, const Arguments& args) {
              args.no_report ? "" : fmt::format("; look at {}/report.html", args.out));
 }
 
-pipeline::RunSummary::About about_run(const Arguments& args, const pipeline::Config& config,
-                                      const map::MapInfo& info, const io::LogReader& reader,
-                                      double elapsed_s) {
-  pipeline::RunSummary::About about;
-  about.method = config.method;
-  about.log = std::filesystem::path(args.log).filename().string();
-  about.map = std::filesystem::path(args.map).filename().string();
-  about.map_identity = info.identity;
-  about.threads = args.run.threads;
-  about.elapsed_s = elapsed_s;
-  about.counters = counters_of(reader);
-  about.warnings = warnings_of(reader);
-  return about;
-}
-
 void write_report(const Arguments& args, const std::filesystem::path& run_dir) {
   if (args.no_report) return;
   evaluation::ReportOptions options;
@@ -87,33 +53,26 @@ void localize(const Arguments& args) {
   const pipeline::Config config = load_config(args);
   std::optional<SE3> pose;
   if (!args.initial_pose.empty()) pose = value_or_fail(parse_pose(args.initial_pose), 2);
-  const auto log_options = value_or_fail(args.run.log_options(), 2);
-  auto reader = value_or_fail(io::open_log(args.log, log_options));
+  LogRun run(args.log, args.run, "localizing");
   auto map = value_or_fail(map::PriorMap::open(args.map));
   const map::MapInfo info = map.info();
   auto localizer =
       value_or_fail(pipeline::Localizer::create(config, std::move(map), pose, args.run.threads));
-  Run run{value_or_fail(pipeline::RunFiles::create(args.out)), {}};
-  const auto begin = std::chrono::steady_clock::now();
-  value_or_fail(pipeline::run(*reader, localizer, [&](const StepReport& report, double progress) {
-    return run.on_step(report, progress);
-  }));
-  if (run.summary.scans() == 0) {
-    throw CommandFailed{
-        1, fmt::format("{}: no scan in this log{}", args.log,
-                       args.run.scans.empty() ? "" : " with --scans " + args.run.scans)};
-  }
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-  value_or_fail(run.files.close());
-  pipeline::Config written = config;
-  value_or_fail(run.files.write("config.yaml", io::write_config(pipeline::fields_of(written))));
+  auto files = value_or_fail(pipeline::RunFiles::create(args.out));
+  run.play(localizer, [&](const StepReport& report, double progress) {
+    run.add(report, progress);
+    return files.add(report);
+  });
+  auto about = run.about(config.method);
+  about.map = std::filesystem::path(args.map).filename().string();
+  about.map_identity = info.identity;
+  value_or_fail(files.close());
   value_or_fail(
-      run.files.write("map_view.json", value_or_fail(pipeline::map_view_json(args.map, info))));
-  value_or_fail(run.files.write(
-      "summary.json", run.summary.json(about_run(args, config, info, *reader, elapsed.count()))));
-  write_report(args, run.files.staging());
-  value_or_fail(run.files.commit());
-  print_result(run.summary, args);
+      files.write("map_view.json", value_or_fail(pipeline::map_view_json(args.map, info))));
+  run.write(config, about, files);
+  write_report(args, files.staging());
+  value_or_fail(files.commit());
+  print_result(run.summary(), args);
 }
 
 }  // namespace

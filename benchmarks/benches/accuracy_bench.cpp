@@ -2,9 +2,9 @@
 
 #include <array>
 #include <limits>
-#include <mutex>
 
 #include "benchmarks/benches/all.hpp"
+#include "benchmarks/drives/drive_series.hpp"
 #include "benchmarks/drives/localization.hpp"
 #include "benchmarks/harness/figures.hpp"
 #include "benchmarks/harness/scratch_folder.hpp"
@@ -17,10 +17,7 @@ namespace {
 constexpr std::array kScenarios = {"corridor", "office", "hall", "warehouse", "yard"};
 
 /// One drive. Where nothing was claimed the errors are infinite: a failure is never left out.
-struct DriveResult {
-  const char* scenario = nullptr;
-  std::uint64_t seed = 0;
-  std::string failure;  ///< why there is no result at all
+struct DriveResult : SeriesDrive {
   double rmse_m = std::numeric_limits<double>::infinity();
   double max_m = std::numeric_limits<double>::infinity();
   double coverage = 0, success = 0, trusted = 0;
@@ -56,37 +53,6 @@ Status drive_and_judge(const DriveSpec& spec, DriveResult& result) {
   return Done{};
 }
 
-std::vector<DriveResult> drives_to_do(const SeedRange& seeds) {
-  std::vector<DriveResult> drives;
-  for (const char* scenario : kScenarios) {
-    for (auto seed = seeds.first; seed <= seeds.last; ++seed) {
-      DriveResult drive;
-      drive.scenario = scenario;
-      drive.seed = seed;
-      drives.push_back(drive);
-    }
-  }
-  return drives;
-}
-
-/// Results stand in the order of scenarios and seeds, whichever thread was first.
-std::vector<DriveResult> run_all(const BenchOptions& options) {
-  std::vector<DriveResult> drives = drives_to_do(options.seeds);
-  WorkerPool pool(options.threads);
-  std::mutex mutex;
-  std::size_t done = 0;
-  pool.run(drives.size(), [&](std::size_t i) {
-    DriveResult& drive = drives[i];
-    const Status status =
-        drive_and_judge({drive.scenario, drive.seed, options.duration_s, 1}, drive);
-    if (!status) drive.failure = status.error().message;
-    const std::lock_guard lock(mutex);
-    options.progress(static_cast<double>(++done) / static_cast<double>(drives.size()),
-                     fmt::format("{}, seed {}", drive.scenario, drive.seed));
-  });
-  return drives;
-}
-
 nlohmann::ordered_json json_of(const DriveResult& d) {
   nlohmann::ordered_json j;
   j["seed"] = d.seed;
@@ -119,20 +85,13 @@ struct Summary {
   }
 };
 
-double least(const std::vector<double>& values) {
-  return *std::min_element(values.begin(), values.end());
-}
-double most(const std::vector<double>& values) {
-  return *std::max_element(values.begin(), values.end());
-}
-
 nlohmann::ordered_json json_of(const Summary& s) {
   nlohmann::ordered_json j;
   j["ate_rmse_median_m"] = known(evaluation::median(s.rmse_m));
-  j["ate_rmse_worst_m"] = known(most(s.rmse_m));
-  j["max_m"] = known(most(s.max_m));
-  j["coverage_worst"] = known(least(s.coverage));
-  j["trusted_worst"] = known(least(s.trusted));
+  j["ate_rmse_worst_m"] = known(largest(s.rmse_m));
+  j["max_m"] = known(largest(s.max_m));
+  j["coverage_worst"] = known(smallest(s.coverage));
+  j["trusted_worst"] = known(smallest(s.trusted));
   j["misleading"] = s.misleading;
   j["failed"] = s.failed;
   j["step_p50_median_ms"] = known(evaluation::median(s.step_p50_ms));
@@ -141,26 +100,26 @@ nlohmann::ordered_json json_of(const Summary& s) {
 
 void add_row(const char* scenario, const Summary& s, Table& table) {
   using namespace evaluation;
-  table.add_row(
-      {scenario, count_text(static_cast<double>(s.rmse_m.size())), length_text(median(s.rmse_m)),
-       length_text(most(s.rmse_m)), length_text(most(s.max_m)), share_text(least(s.coverage)),
-       share_text(least(s.trusted)), count_text(static_cast<double>(s.misleading)),
-       count_text(static_cast<double>(s.failed)), milliseconds_text(median(s.step_p50_ms))});
+  table.add_row({scenario, count_text(static_cast<double>(s.rmse_m.size())),
+                 length_text(median(s.rmse_m)), length_text(largest(s.rmse_m)),
+                 length_text(largest(s.max_m)), share_text(smallest(s.coverage)),
+                 share_text(smallest(s.trusted)), count_text(static_cast<double>(s.misleading)),
+                 count_text(static_cast<double>(s.failed)),
+                 milliseconds_text(median(s.step_p50_ms))});
 }
 
 }  // namespace
 
 Result<BenchReport> measure_accuracy(const BenchOptions& options) {
-  const std::vector<DriveResult> drives = run_all(options);
+  const auto series = measure_series<DriveResult>(kScenarios, options, drive_and_judge);
   BenchReport report;
   Table table({"scenario", "drives", "ATE RMSE, median", "ATE RMSE, worst", "largest error",
                "coverage, worst", "trusted, worst", "misleading scans", "failed drives",
                "step p50"});
-  for (const char* scenario : kScenarios) {
+  for (const auto& [scenario, drives] : series) {
     Summary summary;
     nlohmann::ordered_json runs;
     for (const DriveResult& drive : drives) {
-      if (drive.scenario != scenario) continue;
       summary.add(drive);
       runs.push_back(json_of(drive));
     }

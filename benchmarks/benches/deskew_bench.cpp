@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
 #include "benchmarks/benches/all.hpp"
 #include "benchmarks/benches/deskew_errors.hpp"
 #include "benchmarks/benches/filter_run.hpp"
+#include "benchmarks/drives/drive_series.hpp"
 #include "benchmarks/drives/localization.hpp"
 #include "benchmarks/harness/figures.hpp"
 #include "benchmarks/harness/scratch_folder.hpp"
@@ -59,10 +59,7 @@ struct Judged {
   }
 };
 
-struct DriveResult {
-  const char* scenario = nullptr;
-  std::uint64_t seed = 0;
-  std::string failure;
+struct DriveResult : SeriesDrive {
   std::array<Judged, kMotions.size()> judged;
   double rmse_m = std::numeric_limits<double>::infinity();
   double rmse_raw_m = std::numeric_limits<double>::infinity();  ///< nothing deskewed
@@ -169,28 +166,6 @@ Status measure_drive(const DriveSpec& spec, DriveResult& result) {
   return Done{};
 }
 
-std::vector<DriveResult> measure_all(const BenchOptions& options) {
-  std::vector<DriveResult> drives;
-  for (const char* scenario : kScenarios) {
-    for (auto seed = options.seeds.first; seed <= options.seeds.last; ++seed) {
-      drives.emplace_back().scenario = scenario;
-      drives.back().seed = seed;
-    }
-  }
-  WorkerPool pool(options.threads);
-  std::mutex mutex;
-  std::size_t done = 0;
-  pool.run(drives.size(), [&](std::size_t i) {
-    DriveResult& drive = drives[i];
-    const Status status = measure_drive({drive.scenario, drive.seed, options.duration_s, 1}, drive);
-    if (!status) drive.failure = status.error().message;
-    const std::lock_guard lock(mutex);
-    options.progress(static_cast<double>(++done) / static_cast<double>(drives.size()),
-                     fmt::format("{}, seed {}", drive.scenario, drive.seed));
-  });
-  return drives;
-}
-
 /// Mean and spread over scans of one figure of one placement.
 struct Spread {
   double mean = 0, deviation = 0, worst = 0;
@@ -271,7 +246,6 @@ void add_accuracy(const char* scenario, const std::vector<DriveResult>& drives,
   std::vector<double> raw;
   nlohmann::ordered_json runs;
   for (const DriveResult& drive : drives) {
-    if (drive.scenario != scenario) continue;
     deskewed.push_back(drive.rmse_m);
     raw.push_back(drive.rmse_raw_m);
     runs.push_back({{"seed", drive.seed},
@@ -279,20 +253,17 @@ void add_accuracy(const char* scenario, const std::vector<DriveResult>& drives,
                     {"raw_m", known(drive.rmse_raw_m)}});
     if (!drive.failure.empty()) runs.back()["failure"] = drive.failure;
   }
-  const auto worst = [](const std::vector<double>& v) {
-    return *std::max_element(v.begin(), v.end());
-  };
   data.push_back({{"scenario", scenario},
                   {"raw_median_m", known(evaluation::median(raw))},
-                  {"raw_worst_m", known(worst(raw))},
+                  {"raw_worst_m", known(largest(raw))},
                   {"deskewed_median_m", known(evaluation::median(deskewed))},
-                  {"deskewed_worst_m", known(worst(deskewed))},
+                  {"deskewed_worst_m", known(largest(deskewed))},
                   {"drives", runs}});
   table.add_row({scenario, evaluation::count_text(static_cast<double>(raw.size())),
                  evaluation::length_text(evaluation::median(raw)),
-                 evaluation::length_text(worst(raw)),
+                 evaluation::length_text(largest(raw)),
                  evaluation::length_text(evaluation::median(deskewed)),
-                 evaluation::length_text(worst(deskewed))});
+                 evaluation::length_text(largest(deskewed))});
 }
 
 constexpr const char* kExplanation =
@@ -308,19 +279,17 @@ constexpr const char* kExplanation =
 }  // namespace
 
 Result<BenchReport> measure_deskew(const BenchOptions& options) {
-  const std::vector<DriveResult> drives = measure_all(options);
+  const auto series = measure_series<DriveResult>(kScenarios, options, measure_drive);
   BenchReport report;
   Table table({"scenario, motion", "scans", "raw", "deskewed", "true poses", "ratio",
                "exact ranges: raw", "deskewed", "worst scan", "across edges: raw", "deskewed",
                "true poses"});
   Table accuracy({"scenario", "drives", "ATE RMSE without deskewing, median", "worst",
                   "with, median", "worst"});
-  for (const char* scenario : kScenarios) {
+  for (const auto& [scenario, drives] : series) {
     for (std::size_t motion = 0; motion < kMotions.size(); ++motion) {
       Judged all;
-      for (const DriveResult& drive : drives) {
-        if (drive.scenario == scenario) all.add(drive.judged[motion]);
-      }
+      for (const DriveResult& drive : drives) all.add(drive.judged[motion]);
       report.data["results"].push_back(json_of(scenario, kMotions[motion], all));
       add_row(scenario, kMotions[motion], all, table);
     }

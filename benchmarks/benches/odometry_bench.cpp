@@ -4,18 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <mutex>
 
 #include "benchmarks/benches/all.hpp"
-#include "benchmarks/drives/surveyed_drive.hpp"
+#include "benchmarks/drives/drive_series.hpp"
 #include "benchmarks/harness/figures.hpp"
 #include "benchmarks/harness/scratch_folder.hpp"
 #include "benchmarks/harness/table.hpp"
 #include "evaluation/evaluate.hpp"
 #include "evaluation/result/number_text.hpp"
-#include "holdfast/io/atomic_output.hpp"
 #include "holdfast/pipeline/methods/odometry_run.hpp"
-#include "simulation/log_output.hpp"
 
 namespace holdfast::benchmarks {
 namespace {
@@ -25,10 +22,7 @@ constexpr std::array kScenarios = {"corridor",  "office", "hall",  "offices",
 constexpr std::size_t kSettledScans = 5;  // before increments are judged
 
 /// One drive. Where it could not be judged the drift is infinite: a failure is never left out.
-struct OdometryDrive {
-  const char* scenario = nullptr;
-  std::uint64_t seed = 0;
-  std::string failure;
+struct OdometryDrive : SeriesDrive {
   std::array<double, 3> drift_percent;  ///< over 10, 20 and 50 m
   double ate_m = std::numeric_limits<double>::infinity();
   double path_m = 0;
@@ -104,20 +98,12 @@ class Judge {
   double increments_ = 0;
 };
 
-/// The configuration that `holdfast simulate` writes beside the log.
-Result<pipeline::Config> config_of(simulation::Simulation& simulation) {
-  auto scratch = ScratchFolder::create();
-  if (!scratch) return scratch.error();
-  const auto file = *scratch / "config.yaml";
-  const std::string text = simulation::robot_config(simulation);
-  if (auto written = io::write_file_atomically(file, text); !written) return written.error();
-  return pipeline::load_config(file, {});
-}
-
 Status drive_and_judge(const DriveSpec& spec, OdometryDrive& drive) {
   auto simulation = make_drive(spec);
   if (!simulation) return simulation.error();
-  const auto config = config_of(**simulation);
+  auto scratch = ScratchFolder::create();
+  if (!scratch) return scratch.error();
+  const auto config = load_robot_config(**simulation, scratch->path());
   if (!config) return config.error();
   odometry::Odometry odometry(pipeline::odometry_setup(*config));
   Judge judge(**simulation, drive);
@@ -128,30 +114,6 @@ Status drive_and_judge(const DriveSpec& spec, OdometryDrive& drive) {
   if (auto done = pipeline::run(**simulation, odometry, listen); !done) return done;
   drive.memory_mb = static_cast<double>(odometry.map().memory_bytes()) / 1e6;
   return judge.finish();
-}
-
-std::vector<OdometryDrive> run_all(const BenchOptions& options) {
-  std::vector<OdometryDrive> drives;
-  for (const char* scenario : kScenarios) {
-    for (auto seed = options.seeds.first; seed <= options.seeds.last; ++seed) {
-      drives.emplace_back();
-      drives.back().scenario = scenario;
-      drives.back().seed = seed;
-    }
-  }
-  WorkerPool pool(options.threads);
-  std::mutex mutex;
-  std::size_t done = 0;
-  pool.run(drives.size(), [&](std::size_t i) {
-    OdometryDrive& drive = drives[i];
-    const Status status =
-        drive_and_judge({drive.scenario, drive.seed, options.duration_s, 1}, drive);
-    if (!status) drive.failure = status.error().message;
-    const std::lock_guard lock(mutex);
-    options.progress(static_cast<double>(++done) / static_cast<double>(drives.size()),
-                     fmt::format("{}, seed {}", drive.scenario, drive.seed));
-  });
-  return drives;
 }
 
 nlohmann::ordered_json json_of(const OdometryDrive& d) {
@@ -172,45 +134,33 @@ nlohmann::ordered_json json_of(const OdometryDrive& d) {
   return j;
 }
 
-/// Median and worst of one figure over the drives of a scenario.
-template <class Figure>
-std::array<double, 2> median_and_worst(const std::vector<const OdometryDrive*>& drives,
-                                       const Figure& figure) {
-  std::vector<double> values;
-  for (const OdometryDrive* drive : drives) values.push_back(figure(*drive));
-  // What is not known (a drive shorter than the length) is no figure, what failed is the worst.
-  std::erase_if(values, [](double v) { return std::isnan(v); });
-  if (values.empty()) return {evaluation::kNotKnown, evaluation::kNotKnown};
-  return {evaluation::median(values), *std::max_element(values.begin(), values.end())};
-}
-
 std::string percent_text(double percent) {
   return std::isfinite(percent) ? fmt::format("{:.3f} %", percent) : "-";
 }
 
-void add_row(const char* scenario, const std::vector<const OdometryDrive*>& drives, Table& table) {
+void add_row(const char* scenario, const std::vector<OdometryDrive>& drives, Table& table) {
   using namespace evaluation;
   std::vector<std::string> row = {scenario, count_text(static_cast<double>(drives.size()))};
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto [middle, worst] =
+    const auto [median, worst] =
         median_and_worst(drives, [i](const OdometryDrive& d) { return d.drift_percent[i]; });
-    row.push_back(fmt::format("{} / {}", percent_text(middle), percent_text(worst)));
+    row.push_back(fmt::format("{} / {}", percent_text(median), percent_text(worst)));
   }
   const auto ate = median_and_worst(drives, [](const OdometryDrive& d) { return d.ate_m; });
   const auto nees = median_and_worst(drives, [](const OdometryDrive& d) { return d.nees_all; });
   std::vector<double> step_ms;
   double breaks = 0, weak = 0, scans = 0, memory = 0;
-  for (const OdometryDrive* d : drives) {
-    step_ms.insert(step_ms.end(), d->step_ms.begin(), d->step_ms.end());
-    breaks += d->breaks;
-    weak += static_cast<double>(d->weak);
-    scans += static_cast<double>(d->scans);
-    memory = std::max(memory, d->memory_mb);
+  for (const OdometryDrive& d : drives) {
+    step_ms.insert(step_ms.end(), d.step_ms.begin(), d.step_ms.end());
+    breaks += d.breaks;
+    weak += static_cast<double>(d.weak);
+    scans += static_cast<double>(d.scans);
+    memory = std::max(memory, d.memory_mb);
   }
   const Distribution step = distribution_of(step_ms);
-  row.insert(row.end(), {fmt::format("{} / {}", length_text(ate[0]), length_text(ate[1])),
-                         fmt::format("{:.2f} / {:.2f}", nees[0], nees[1]), count_text(breaks),
-                         share_text(weak / scans), milliseconds_text(step.p50),
+  row.insert(row.end(), {fmt::format("{} / {}", length_text(ate.median), length_text(ate.worst)),
+                         fmt::format("{:.2f} / {:.2f}", nees.median, nees.worst),
+                         count_text(breaks), share_text(weak / scans), milliseconds_text(step.p50),
                          milliseconds_text(step.p99), memory_text(memory)});
   table.add_row(row);
 }
@@ -225,20 +175,15 @@ constexpr const char* kNote =
 }  // namespace
 
 Result<BenchReport> measure_odometry(const BenchOptions& options) {
-  const std::vector<OdometryDrive> drives = run_all(options);
+  const auto series = measure_series<OdometryDrive>(kScenarios, options, drive_and_judge);
   BenchReport report;
   Table table({"scenario", "drives", "drift over 10 m", "20 m", "50 m", "ATE RMSE", "NEES",
                "breaks", "weak", "step p50", "p99", "memory"});
-  for (const char* scenario : kScenarios) {
-    std::vector<const OdometryDrive*> of_scenario;
+  for (const auto& [scenario, drives] : series) {
     nlohmann::ordered_json runs;
-    for (const OdometryDrive& drive : drives) {
-      if (drive.scenario != scenario) continue;
-      of_scenario.push_back(&drive);
-      runs.push_back(json_of(drive));
-    }
+    for (const OdometryDrive& drive : drives) runs.push_back(json_of(drive));
     report.data["results"].push_back({{"scenario", scenario}, {"drives", runs}});
-    add_row(scenario, of_scenario, table);
+    add_row(scenario, drives, table);
   }
   report.markdown = table.markdown() + kNote;
   return report;

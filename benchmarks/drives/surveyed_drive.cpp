@@ -16,16 +16,21 @@ Result<std::unique_ptr<simulation::Simulation>> make_drive(const DriveSpec& spec
   return simulation::Simulation::create(options);
 }
 
+Result<pipeline::Config> load_robot_config(simulation::Simulation& drive,
+                                           const std::filesystem::path& dir) {
+  const auto file = dir / "config.yaml";
+  const std::string text = simulation::robot_config(drive);
+  if (auto written = io::write_file_atomically(file, text); !written) return written.error();
+  return pipeline::load_config(file, {});
+}
+
 Result<SurveyedDrive> survey_drive(const DriveSpec& spec, const std::filesystem::path& dir) {
   auto simulation = make_drive(spec);
   if (!simulation) return simulation.error();
   SurveyedDrive drive;
   drive.simulation = std::move(*simulation);
   drive.map_dir = dir / "map";
-  const auto config_file = dir / "config.yaml";
-  const std::string text = simulation::robot_config(*drive.simulation);
-  if (auto written = io::write_file_atomically(config_file, text); !written) return written.error();
-  auto config = pipeline::load_config(config_file, {});
+  auto config = load_robot_config(*drive.simulation, dir);
   if (!config) return config.error();
   drive.config = *config;
   drive.initial_pose = drive.simulation->initial_pose();

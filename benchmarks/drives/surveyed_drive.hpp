@@ -32,6 +32,10 @@ Result<SurveyedDrive> survey_drive(const DriveSpec& spec, const std::filesystem:
 /// The same without a map.
 Result<std::unique_ptr<simulation::Simulation>> make_drive(const DriveSpec& spec);
 
+/// The configuration that `holdfast simulate` writes, by way of a file in `dir`.
+Result<pipeline::Config> load_robot_config(simulation::Simulation& drive,
+                                           const std::filesystem::path& dir);
+
 /// Runs the drive to its end, into a ROS 1 bag.
 Status record_bag(simulation::Simulation& drive, const std::filesystem::path& bag);
 

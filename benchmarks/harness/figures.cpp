@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "evaluation/statistics.hpp"
@@ -16,6 +17,20 @@ Distribution distribution_of(const std::vector<double>& values) {
 nlohmann::ordered_json json_of(const Distribution& d) {
   return {
       {"p50", known(d.p50)}, {"p95", known(d.p95)}, {"p99", known(d.p99)}, {"max", known(d.max)}};
+}
+
+MedianAndWorst median_and_worst(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return std::isnan(v); });
+  if (values.empty()) return {evaluation::kNotKnown, evaluation::kNotKnown};
+  return {evaluation::median(values), largest(values)};
+}
+
+double smallest(const std::vector<double>& values) {
+  return *std::min_element(values.begin(), values.end());
+}
+
+double largest(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
 }
 
 std::string ratio_text(double ratio) {

@@ -18,6 +18,25 @@ Distribution distribution_of(const std::vector<double>& values);
 /// {"p50": ..., "p95": ..., "p99": ..., "max": ...}.
 nlohmann::ordered_json json_of(const Distribution& distribution);
 
+/// Of one figure over many drives. What is not known (NaN) is no figure; what failed (infinite) is
+/// the worst. Both NaN for no figures.
+struct MedianAndWorst {
+  double median = 0, worst = 0;
+};
+MedianAndWorst median_and_worst(std::vector<double> values);
+
+/// The same of `figure(drive)` over drives.
+template <class Drive, class Figure>
+MedianAndWorst median_and_worst(const std::vector<Drive>& drives, const Figure& figure) {
+  std::vector<double> values;
+  for (const Drive& drive : drives) values.push_back(figure(drive));
+  return median_and_worst(std::move(values));
+}
+
+/// Of at least one value.
+double smallest(const std::vector<double>& values);
+double largest(const std::vector<double>& values);
+
 /// "11.7 x" with three digits; "-" for what is not known.
 std::string ratio_text(double ratio);
 

@@ -1,9 +1,13 @@
-#include "apps/log_account.hpp"
+#include "apps/log_run.hpp"
 
 #include <fmt/format.h>
 
-namespace holdfast::apps {
+#include <filesystem>
 
+namespace holdfast::apps {
+namespace {
+
+/// What reading the log survived, for summary.json.
 std::vector<std::pair<std::string, std::uint64_t>> counters_of(const io::LogReader& reader) {
   const io::LogCounters& c = reader.counters();
   return {{"imu_samples", c.imu_samples},
@@ -18,6 +22,7 @@ std::vector<std::pair<std::string, std::uint64_t>> counters_of(const io::LogRead
           {"truncated", c.truncated ? 1U : 0U}};
 }
 
+/// What of it a user should know, as sentences.
 std::vector<std::string> warnings_of(const io::LogReader& reader) {
   const io::LogCounters& c = reader.counters();
   std::vector<std::string> warnings;
@@ -34,6 +39,38 @@ std::vector<std::string> warnings_of(const io::LogReader& reader) {
     warnings.emplace_back("the points carry no times: motion during a scan is not corrected");
   }
   return warnings;
+}
+
+}  // namespace
+
+LogRun::LogRun(std::string log, const RunOptions& options, std::string title)
+    : log_(std::move(log)), options_(options), bar_(std::move(title)) {
+  const auto log_options = value_or_fail(options.log_options(), 2);
+  reader_ = value_or_fail(io::open_log(log_, log_options));
+}
+
+void LogRun::add(const StepReport& report, double progress) {
+  summary_.add(report);
+  bar_.update(progress, fmt::format("{} scans, {}, {:.2f} ms a scan", summary_.scans(),
+                                    to_string(report.state), report.times.total_ms));
+}
+
+void LogRun::require_scans() const {
+  if (summary_.scans() > 0) return;
+  throw CommandFailed{1,
+                      fmt::format("{}: no scan in this log{}", log_,
+                                  options_.scans.empty() ? "" : " with --scans " + options_.scans)};
+}
+
+pipeline::RunSummary::About LogRun::about(const std::string& method) const {
+  pipeline::RunSummary::About about;
+  about.method = method;
+  about.log = std::filesystem::path(log_).filename().string();
+  about.threads = options_.threads;
+  about.elapsed_s = elapsed_s_;
+  about.counters = counters_of(*reader_);
+  about.warnings = warnings_of(*reader_);
+  return about;
 }
 
 }  // namespace holdfast::apps
