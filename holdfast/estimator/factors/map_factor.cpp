@@ -10,26 +10,25 @@ static_assert(int{kPosition} == NodeState::kP && int{kRotation} == NodeState::kR
               int{kVelocity} == NodeState::kV);
 
 MapFactor::MapFactor(const registration::NormalEquations& equations, const NodeState& at)
-    : T_map_body_(at.T_map_body),
-      v_map_(at.v_map),
-      H_(equations.H),
-      g_(equations.g),
-      cost_(equations.cost) {}
+    : at_(at), cost_(equations.cost) {
+  H_.topLeftCorner<9, 9>() = equations.H;
+  g_.head<9>() = equations.g;
+}
+
+MapFactor::MapFactor(const Matrix15d& H, const Vector15d& g, double cost, const NodeState& at)
+    : at_(at), H_(H), g_(g), cost_(cost) {}
 
 void MapFactor::add_to(const NodeState& x, NodeBlock& out, double& cost) const {
-  Vector9d e;
-  e.segment<3>(kPosition) = x.T_map_body.translation - T_map_body_.translation;
-  e.segment<3>(kRotation) = so3::log(T_map_body_.rotation.conjugate() * x.T_map_body.rotation);
-  e.segment<3>(kVelocity) = x.v_map - v_map_;
+  const Vector15d e = x.minus(at_).head<15>();
   const Eigen::Matrix3d J = chart_jacobian(e.segment<3>(kRotation));
-  const Vector9d He = H_ * e;
-  Vector9d gradient = g_ + He;
+  const Vector15d He = H_ * e;
+  Vector15d gradient = g_ + He;
   gradient.segment<3>(kRotation) = J.transpose() * gradient.segment<3>(kRotation).eval();
-  Matrix9d H = H_;
+  Matrix15d H = H_;
   H.middleCols<3>(kRotation) = H_.middleCols<3>(kRotation) * J;
   H.middleRows<3>(kRotation) = J.transpose() * H.middleRows<3>(kRotation).eval();
-  out.H.topLeftCorner<9, 9>() += H;
-  out.g.head<9>() += gradient;
+  out.H.topLeftCorner<15, 15>() += H;
+  out.g.head<15>() += gradient;
   cost += cost_ + e.dot(2 * g_ + He);
 }
 

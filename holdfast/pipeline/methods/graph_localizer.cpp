@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "holdfast/pipeline/methods/skew_match.hpp"
 #include "holdfast/registration/degeneracy.hpp"
 
 namespace holdfast::pipeline {
@@ -17,8 +18,9 @@ constexpr TimeNs kImuMemory = 2 * kSecond;
 constexpr double kLeastWeight = 30.0;
 constexpr double kCoarseFromM = 0.1;
 constexpr float kCoarseSurfaceSigmaM = 0.05F;
-constexpr double kLeverM = 10.0;        // of the map's own error: how far its planes are away
+constexpr double kLeverM = 10.0;        // how far the map's planes are away
 constexpr int kJumpAges = 4;            // intervals in which a bias may have jumped unnoticed
+constexpr double kSkewToldM = 0.005;    // skew that is worth being estimated
 constexpr double kMostScansAlike = 30;  // of the same part of the map, however slow the robot
 
 double largest_sigma(const Matrix18d& P, int offset) {
@@ -141,22 +143,36 @@ bool GraphLocalizer::prepare(const Scan& scan, StepReport& report) {
 bool GraphLocalizer::predict(TimeNs to, StepReport& report) {
   if (!imu_.segment(smoother_.newest().t, to, segment_)) return false;
   report.imu_held_ns = segment_.held_ns;
-  const bool holding = segment_.held_ns > filter::kLongestHold;
-  if (holding && !before_hold_) before_hold_ = filter_state_of_newest().biases();
-  if (!holding && before_hold_) restore_biases();
+  allow_for_silence();
   smoother_.push(segment_);
   return true;
+}
+
+/// While the IMU is silent the biases stand for what the robot does; they are biases again for
+/// readings that were measured. Between two readings far apart neither tells what it does: the
+/// biases of before are the best start, and let go likewise.
+void GraphLocalizer::allow_for_silence() {
+  const bool between = segment_.longest_gap_ns > filter::kLongestHold && segment_.held_ns == 0;
+  if (between) segment_.held_ns = segment_.longest_gap_ns;
+  silent_ = segment_.held_ns > filter::kLongestHold;
+  if (silent_ && !before_hold_) before_hold_ = filter_state_of_newest().biases();
+  if (!before_hold_ || (silent_ && !between)) return;
+  restore_biases();
+  if (!silent_) before_hold_.reset();
 }
 
 filter::FilterState GraphLocalizer::filter_state_of_newest() const {
   return filter_state_of(smoother_.newest(), smoother_.covariance_of_newest());
 }
 
-/// While the IMU was silent the biases stood for what the robot did; now they are biases again.
 void GraphLocalizer::restore_biases() {
   filter::FilterState state = filter_state_of_newest();
   state.set_biases(*before_hold_);
-  before_hold_.reset();
+  if (silent_) {
+    const auto& motion = setup_.smoother.noise.unmeasured;
+    state.P.diagonal().segment<3>(NodeState::kBa).array() += std::pow(motion.accel_sigma_m_s2, 2);
+    state.P.diagonal().segment<3>(NodeState::kBg).array() += std::pow(motion.gyro_sigma_rad_s, 2);
+  }
   Matrix18d P = Matrix18d::Zero();
   P.topLeftCorner<15, 15>() = state.P;
   P.bottomRightCorner<3, 3>() = smoother_.covariance_of_newest().bottomRightCorner<3, 3>();
@@ -195,21 +211,32 @@ GraphLocalizer::Match GraphLocalizer::match(const NodeState& predicted, StageClo
 /// IMU, odometry and map together; the map residual is linearised anew in every iteration.
 GraphLocalizer::Match GraphLocalizer::match_finely(const filter::UpdateOptions& options,
                                                    StageClock& clock) {
-  const filter::PairingWith pairing(*map_);
+  const filter::PairingWith<map::PriorMap> pairing(*map_);
   filter::ScanMatch scan(pairing, scan_, options, pool_, work_, &clock);
+  SkewMatch skewed(*map_, scan_, options, pool_, work_, &clock);
   estimator::OptimiseOptions how;
   how.min_measurements = filter::ScanMatch::kCalls;
   how.max_measurements = options.max_iterations;
   Match found;
   found.optimised = smoother_.optimise(
       [&](const NodeState& x) -> std::optional<estimator::MapFactor> {
-        const auto& equations = scan.linearise(match_state_of(x));
-        if (scan.raw().weight < kLeastWeight) return std::nullopt;
-        return estimator::MapFactor(equations, x);
+        const bool open = motion_is_open();
+        const estimator::MapFactor factor =
+            open ? skewed.linearise(x) : estimator::MapFactor(scan.linearise(match_state_of(x)), x);
+        found.equations = open ? skewed.raw() : scan.raw();
+        if (found.equations.weight < kLeastWeight) return std::nullopt;
+        return factor;
       },
       how);
-  found.equations = scan.raw();
   return found;
+}
+
+/// Is the motion during the scan so uncertain that its skew has to tell it?
+bool GraphLocalizer::motion_is_open() const {
+  const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
+  const Matrix18d P = smoother_.covariance_of_prediction();
+  return span * largest_sigma(P, NodeState::kV) > kSkewToldM ||
+         span * largest_sigma(P, NodeState::kBg) * kLeverM > kSkewToldM;
 }
 
 /// Where the prediction may be off by more than the finest planes reach, coarser ones give a guess.
@@ -224,6 +251,7 @@ bool GraphLocalizer::lead_by_coarse_planes(const NodeState& predicted, double si
     how.association.gate_m = std::max(how.association.gate_m, static_cast<float>(3.0 * sigma_m));
     how.association.surface_sigma_m = kCoarseSurfaceSigmaM;
     how.association.ambiguity_sigmas = 0;
+    how.velocity_from_skew = motion_is_open();
     const auto update = filter::update_with_scan(*map_, scan_, predicted.gravity_map, how, pool_,
                                                  work_, prior, state, &clock);
     if (!update.usable) return false;

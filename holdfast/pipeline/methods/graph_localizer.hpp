@@ -65,9 +65,11 @@ class GraphLocalizer : public ScanLocalizer {
   bool prepare(const Scan& scan, StepReport& report);
   bool predict(TimeNs to, StepReport& report);
   filter::FilterState filter_state_of_newest() const;
+  void allow_for_silence();
   void restore_biases();
   Match match(const estimator::NodeState& predicted, StageClock& clock);
   Match match_finely(const filter::UpdateOptions& options, StageClock& clock);
+  bool motion_is_open() const;
   bool lead_by_coarse_planes(const estimator::NodeState& predicted, double sigma_m,
                              StageClock& clock);
   void allow_for_bias_jump(Match& match, StageClock& clock);
@@ -86,7 +88,8 @@ class GraphLocalizer : public ScanLocalizer {
   estimator::FixedLagSmoother smoother_;
   std::uint64_t scan_number_ = 0;
   double travel_per_scan_m_ = 0;
-  std::optional<filter::FilterState::Biases> before_hold_;  ///< while the IMU is silent
+  bool silent_ = false;  ///< the IMU, for most of the newest interval
+  std::optional<filter::FilterState::Biases> before_hold_;  ///< while it is
 };
 
 }  // namespace holdfast::pipeline

@@ -1,0 +1,130 @@
+#include "holdfast/pipeline/methods/skew_match.hpp"
+
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "holdfast/core/random.hpp"
+#include "holdfast/preprocess/deskew.hpp"
+
+namespace holdfast::pipeline {
+namespace {
+
+using estimator::NodeState;
+
+constexpr TimeNs kStamp = 5 * kSecond;
+constexpr TimeNs kEnd = kStamp + kSecond / 10;
+
+Eigen::Vector3d random_vector(RandomStream& random, double scale) {
+  return scale * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+}
+
+/// Points that a body in slow motion measured on planes of any direction, a little off them. Of a
+/// slow body the derivatives by the motion are those of a body at rest.
+struct SlowScan {
+  SlowScan() {
+    RandomStream random(1, "slow scan");
+    x.T_map_body = {so3::exp(random_vector(random, 1.0)), random_vector(random, 3.0)};
+    x.v_map = random_vector(random, 1e-3);
+    x.gravity_map = {0, 0, -9.81};
+    x.t = kEnd;
+    const Eigen::Vector3d force = -(x.T_map_body.rotation.conjugate() * x.gravity_map);
+    imu.samples = {{kStamp, random_vector(random, 1e-3), force},
+                   {kEnd, random_vector(random, 1e-3), force}};
+    for (int i = 0; i < 400; ++i) {
+      const Eigen::Vector3f p = random_vector(random, 8.0).cast<float>();
+      scan.points.push_back({.x = p.x(), .y = p.y(), .z = p.z(), .time_offset_ns = i * 250000});
+      normals.push_back(random_vector(random, 1.0).normalized());
+      noise.push_back(0.02 * random.normal());
+    }
+    pairs = pairs_at(x);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const Eigen::Vector3d q(pairs.px[i], pairs.py[i], pairs.pz[i]);
+      pairs.offset[i] = static_cast<float>(normals[i].dot(x.T_map_body * q) + noise[i]);
+    }
+  }
+
+  /// The pairs with the points moved as a body with the state `at` moved.
+  registration::Correspondences pairs_at(const NodeState& at) const {
+    const Eigen::Quaterniond R_body_map = at.T_map_body.rotation.conjugate();
+    preprocess::ScanMotion motion;
+    motion.set(imu,
+               {R_body_map * at.v_map, R_body_map * at.gravity_map, at.gyro_bias, at.accel_bias},
+               SE3{}, kStamp, kEnd);
+    registration::Correspondences out = pairs;
+    out.resize(scan.points.size());
+    for (std::size_t i = 0; i < scan.points.size(); ++i) {
+      const Eigen::Vector3f q = motion.deskew(scan.points[i]);
+      std::tie(out.px[i], out.py[i], out.pz[i]) = std::tuple(q.x(), q.y(), q.z());
+      const Eigen::Vector3f n = normals[i].cast<float>();
+      std::tie(out.nx[i], out.ny[i], out.nz[i]) = std::tuple(n.x(), n.y(), n.z());
+      out.information[i] = 1.0F;
+      out.age_s[i] = static_cast<float>(scan.points[i].time_offset_ns) * 1e-9F - 0.1F;
+    }
+    return out;
+  }
+
+  /// Residuals at `at`, in double.
+  Eigen::VectorXd residuals(const NodeState& at) const {
+    const auto moved = pairs_at(at);
+    Eigen::VectorXd r(static_cast<Eigen::Index>(moved.size()));
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      const Eigen::Vector3d q(moved.px[i], moved.py[i], moved.pz[i]);
+      r[static_cast<Eigen::Index>(i)] = normals[i].dot(at.T_map_body * q) - pairs.offset[i];
+    }
+    return r;
+  }
+
+  NodeState x;
+  preprocess::ImuSegment imu;
+  Scan scan;
+  std::vector<Eigen::Vector3d> normals;
+  std::vector<double> noise;
+  registration::Correspondences pairs;
+};
+
+TEST(SkewEquations, AreThoseOfTheDerivativesOfDeskewedPoints) {
+  const SlowScan s;
+  constexpr double kWide = 1e6;  // of the robust loss: no point counts less than another
+  filter::Matrix15d H = filter::Matrix15d::Zero();
+  filter::Vector15d g = filter::Vector15d::Zero();
+  linearise_with_skew(s.pairs, s.x.T_map_body, kWide, H, g);
+  // A step that moves a point by about 1 cm: the points are floats.
+  constexpr double kSteps[] = {0.01, 0.001, 0.1, 2.0, 0.02};
+  Eigen::Matrix<double, Eigen::Dynamic, 15> J(400, 15);
+  for (int k = 0; k < 15; ++k) {
+    estimator::Vector18d d = estimator::Vector18d::Zero();
+    d[k] = kSteps[k / 3];
+    NodeState up = s.x;
+    NodeState down = s.x;
+    up.add(d);
+    down.add(-d);
+    J.col(k) = (s.residuals(up) - s.residuals(down)) / (2 * kSteps[k / 3]);
+  }
+  const Eigen::VectorXd r = s.residuals(s.x);
+  for (int k = 0; k < 15; ++k) {
+    const double scale = J.col(k).norm();
+    ASSERT_GT(scale, 1e-3);
+    EXPECT_NEAR(H(k, k) / (scale * scale), 1.0, 0.02) << "unknown " << k;
+    EXPECT_NEAR(g[k] / scale, J.col(k).dot(r) / scale, 0.02 * r.norm()) << "unknown " << k;
+    for (int l = 0; l < k; ++l) {
+      EXPECT_NEAR(H(k, l), J.col(k).dot(J.col(l)), 0.02 * scale * J.col(l).norm());
+    }
+  }
+}
+
+TEST(SkewEquations, AgreeWithThoseOfPoseAndVelocityAndTheirRobustWeights) {
+  const SlowScan s;
+  filter::Matrix15d H = filter::Matrix15d::Zero();
+  filter::Vector15d g = filter::Vector15d::Zero();
+  constexpr double kNarrow = 0.02;
+  linearise_with_skew(s.pairs, s.x.T_map_body, kNarrow, H, g);
+  WorkerPool pool(1);
+  std::vector<registration::NormalEquations> partials;
+  const auto e = registration::linearise(s.pairs, s.x.T_map_body, kNarrow, pool, partials);
+  EXPECT_LT((H.topLeftCorner<9, 9>() - e.H).norm(), 1e-4 * e.H.norm());
+  EXPECT_LT((g.head<9>() - e.g).norm(), 1e-3 * e.g.norm());
+}
+
+}  // namespace
+}  // namespace holdfast::pipeline
