@@ -10,6 +10,8 @@ namespace holdfast::features {
 
 /// How points are classified (article 3.2.1), and by which limits.
 struct FeatureConfig {
+  /// printed: the article's sum over 5 points; log: its logarithm; fitted: windows of a metric
+  /// length tested against straight lines. Chosen by the key `features`, which can also be off.
   std::string smoothness = "fitted";
   double edge_sigmas = 1.5;
   double plane_sigmas = 1.0;
@@ -23,11 +25,6 @@ struct FeatureConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    constexpr double kNone = -std::numeric_limits<double>::infinity();
-    visit("smoothness", self.smoothness,
-          FieldDoc{"printed: the article's sum over 5 points; log: its logarithm; fitted: windows "
-                   "of a metric length tested against straight lines",
-                   kNone, -kNone, "printed|log|fitted"});
     visit("edge_sigmas", self.edge_sigmas,
           FieldDoc{"printed, log: an edge is this many sigmas above the mean", 0.0, 10.0});
     visit("plane_sigmas", self.plane_sigmas,

@@ -23,6 +23,8 @@ class PriorMap {
   static Result<PriorMap> open(const std::filesystem::path& dir);
 
   const MapInfo& info() const { return info_; }
+  /// The folder that the map was opened from.
+  const std::filesystem::path& dir() const { return dir_; }
 
   /// Makes the tiles within `radius_m` of `p_map` available, drops those beyond twice that radius,
   /// and moves the anchor. Reads from disk only when the robot comes near new tiles.

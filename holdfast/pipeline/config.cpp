@@ -9,6 +9,8 @@ std::vector<io::FieldRef> fields_of(Config& config) {
   io::collect_fields("imu", config.imu, fields);
   io::collect_fields("start", config.start, fields);
   io::collect_fields("preprocess", config.preprocess, fields);
+  io::collect_fields("feature_extraction", config.feature_extraction, fields);
+  io::collect_fields("query_matching", config.query_matching, fields);
   io::collect_fields("map_filter", config.map_filter, fields);
   io::collect_fields("estimator", config.estimator, fields);
   io::collect_fields("estimator.unmeasured", config.estimator.noise.unmeasured, fields);

@@ -6,10 +6,12 @@
 
 #include "baselines/map_filter.hpp"
 #include "holdfast/estimator/smoother_options.hpp"
+#include "holdfast/features/feature_config.hpp"
 #include "holdfast/io/config_io.hpp"
 #include "holdfast/odometry/odometry_config.hpp"
 #include "holdfast/pipeline/methods/graph_localizer.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
+#include "holdfast/registration/fit_at_query.hpp"
 
 namespace holdfast::pipeline {
 
@@ -46,10 +48,14 @@ struct Config {
   SE3 T_body_lidar;
   bool has_T_body_lidar = false;
   std::string method = "map_filter";
+  std::string features = "off";
+  bool fit_at_query = false;
   LidarConfig lidar;
   filter::ImuNoiseConfig imu;
   StartConfig start;
   preprocess::ScanSelectionConfig preprocess;
+  features::FeatureConfig feature_extraction;
+  registration::FitAtQueryConfig query_matching;
   baselines::MapFilterConfig map_filter;
   estimator::SmootherConfig estimator;
   GraphConfig graph;
@@ -63,9 +69,16 @@ struct Config {
         FieldDoc{"pose of the LiDAR in the body frame (the IMU's): x, y, z in m, then qx, qy, qz, "
                  "qw; required"},
         &self.has_T_body_lidar);
-    visit("method", self.method,
-          FieldDoc{"localizer", -std::numeric_limits<double>::infinity(),
-                   std::numeric_limits<double>::infinity(), "map_filter|graph"});
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    visit("method", self.method, FieldDoc{"localizer", -kAny, kAny, "map_filter|graph"});
+    visit("features", self.features,
+          FieldDoc{"points of a scan that are matched (article 3.2.1): all, spread over the scan "
+                   "(off); or its edges and planes only, by the article's smoothness (printed), "
+                   "its logarithm (log), or straight windows of a metric length (fitted)",
+                   -kAny, kAny, "off|printed|log|fitted"});
+    visit("fit_at_query", self.fit_at_query,
+          FieldDoc{"fit lines and planes of the map at query time (article 3.2.2) instead of once "
+                   "when the map is made; slow, and needs method: map_filter and features"});
   }
 };
 

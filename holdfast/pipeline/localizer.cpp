@@ -1,9 +1,13 @@
 #include "holdfast/pipeline/localizer.hpp"
 
+#include <fmt/format.h>
+
 #include <numbers>
 
 #include "baselines/map_filter.hpp"
+#include "holdfast/pipeline/methods/feature_selection.hpp"
 #include "holdfast/pipeline/methods/graph_localizer.hpp"
+#include "holdfast/pipeline/methods/query_matching.hpp"
 
 namespace holdfast::pipeline {
 namespace {
@@ -37,6 +41,39 @@ baselines::MapFilter::Setup filter_setup(const Config& config, int threads) {
   return setup;
 }
 
+features::FeatureConfig feature_config(const Config& config) {
+  features::FeatureConfig features = config.feature_extraction;
+  if (config.features != "off") features.smoothness = config.features;
+  return features;
+}
+
+Result<std::unique_ptr<ScanLocalizer>> make_query_matching(const Config& config, map::PriorMap map,
+                                                           const baselines::MapFilter::Setup& start,
+                                                           const SE3& T_map_body) {
+  if (config.features == "off" || config.method != "map_filter") {
+    return Error{fmt::format(
+        "fit_at_query: true needs method: map_filter and features: printed, log or fitted; found "
+        "method: {} and features: {}",
+        config.method, config.features)};
+  }
+  return QueryMatching::create(std::move(map),
+                               {start, feature_config(config), config.query_matching}, T_map_body);
+}
+
+std::unique_ptr<ScanLocalizer> make_method(const Config& config, map::PriorMap map,
+                                           const baselines::MapFilter::Setup& start,
+                                           const SE3& T_map_body) {
+  if (config.method == "map_filter") {
+    return std::make_unique<MapFilterMethod>(std::move(map), start, T_map_body);
+  }
+  GraphLocalizer::Setup setup;
+  setup.start = start;
+  setup.smoother = config.estimator;
+  setup.smoother.noise.imu = config.imu;
+  setup.graph = config.graph;
+  return std::make_unique<GraphLocalizer>(std::move(map), setup, T_map_body);
+}
+
 }  // namespace
 
 Result<Localizer> Localizer::create(const Config& config, map::PriorMap map,
@@ -52,15 +89,17 @@ Result<Localizer> Localizer::create(const Config& config, map::PriorMap map,
     return focused.error();
   }
   const baselines::MapFilter::Setup start = filter_setup(config, threads);
-  if (config.method == "map_filter") {
-    return Localizer(std::make_unique<MapFilterMethod>(std::move(map), start, *T_map_body));
+  if (config.fit_at_query) {
+    auto method = make_query_matching(config, std::move(map), start, *T_map_body);
+    if (!method) return method.error();
+    return Localizer(std::move(*method));
   }
-  GraphLocalizer::Setup setup;
-  setup.start = start;
-  setup.smoother = config.estimator;
-  setup.smoother.noise.imu = config.imu;
-  setup.graph = config.graph;
-  return Localizer(std::make_unique<GraphLocalizer>(std::move(map), setup, *T_map_body));
+  auto method = make_method(config, std::move(map), start, *T_map_body);
+  if (config.features != "off") {
+    method = std::make_unique<FeatureSelection>(std::move(method), feature_config(config),
+                                                config.lidar.range_sigma_m);
+  }
+  return Localizer(std::move(method));
 }
 
 void Localizer::add_imu(const ImuSample& sample) { method_->add_imu(sample); }
