@@ -16,6 +16,7 @@ namespace {
 struct BenchArguments {
   std::string name, out, seeds;
   std::optional<double> duration_s;
+  std::vector<std::string> settings;
   int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 };
 
@@ -26,6 +27,7 @@ void bench(const BenchArguments& args) {
       args.seeds.empty() ? info.seeds : value_or_fail(benchmarks::parse_seeds(args.seeds), 2);
   options.duration_s = args.duration_s.value_or(info.duration_s);
   options.threads = args.threads;
+  options.settings = args.settings;
   benchmarks::BenchReport report;
   {
     ProgressBar bar("bench " + args.name);
@@ -65,6 +67,11 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--threads", args->threads, "threads (default: all cores)")
       ->check(CLI::Range(1, 64))
       ->type_name("N");
+  command
+      ->add_option("--set", args->settings,
+                   "module.key=value, over the configuration of each drive; repeatable")
+      ->take_all()
+      ->allow_extra_args(false);
   command->footer(list_of_benches());
   command->callback([args] { bench(*args); });
 }

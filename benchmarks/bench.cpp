@@ -9,17 +9,23 @@
 
 #include "benchmarks/benches/all.hpp"
 #include "holdfast/io/atomic_output.hpp"
+#include "holdfast/pipeline/config.hpp"
 
 namespace holdfast::benchmarks {
 namespace {
 
-constexpr std::array<BenchInfo, 7> kBenches = {{
+constexpr std::array<BenchInfo, 9> kBenches = {{
     {"step",
      "time of a step, beside a k-d-tree registration and plain reading of the log",
      {1, 1},
      20,
      measure_step},
-    {"accuracy", "errors over worlds and seeds in surveyed maps", {1, 10}, 60, measure_accuracy},
+    {"accuracy",
+     "errors over worlds and seeds in surveyed maps",
+     {1, 10},
+     60,
+     measure_accuracy,
+     true},
     {"import",
      "time and memory of making and using a map of 2 million points",
      {1, 1},
@@ -40,7 +46,20 @@ constexpr std::array<BenchInfo, 7> kBenches = {{
      "drift, consistency, time and memory of the odometry alone",
      {1, 5},
      60,
-     measure_odometry},
+     measure_odometry,
+     true},
+    {"consistency",
+     "errors of the localizer by the covariance that it reports",
+     {101, 105},
+     30,
+     measure_consistency,
+     true},
+    {"ablation",
+     "errors of the whole system and of it without one part at a time",
+     {1, 3},
+     30,
+     measure_ablation,
+     true},
 }};
 
 constexpr std::uint64_t kMostSeeds = 1000;
@@ -63,9 +82,13 @@ std::string cpu_model() {
 
 /// The command line that gives this result, whatever was left to defaults.
 std::string command_of(const BenchInfo& bench, const BenchOptions& options) {
-  return fmt::format("holdfast bench {} --out DIR --seeds {}:{} --duration {} --threads {}",
-                     bench.name, options.seeds.first, options.seeds.last, options.duration_s,
-                     options.threads);
+  std::string command = fmt::format(
+      "holdfast bench {} --out DIR --seeds {}:{} --duration {} --threads {}", bench.name,
+      options.seeds.first, options.seeds.last, options.duration_s, options.threads);
+  for (const std::string& setting : options.settings) {
+    command += fmt::format(" --set \"{}\"", setting);
+  }
+  return command;
 }
 
 nlohmann::ordered_json origin_of(const BenchInfo& bench, const BenchOptions& options) {
@@ -84,6 +107,19 @@ nlohmann::ordered_json origin_of(const BenchInfo& bench, const BenchOptions& opt
   j["assertions"] = true;
 #endif
   return j;
+}
+
+/// Before the first drive, not as the failure of each.
+Status check_settings(const BenchInfo& bench, const BenchOptions& options) {
+  if (!options.settings.empty() && !bench.takes_settings) {
+    return Error{fmt::format("bench {} takes no --set", bench.name)};
+  }
+  pipeline::Config config;
+  auto fields = pipeline::fields_of(config);
+  for (const std::string& setting : options.settings) {
+    if (auto set = io::set_field(setting, fields); !set) return set;
+  }
+  return Done{};
 }
 
 }  // namespace
@@ -114,6 +150,7 @@ Result<SeedRange> parse_seeds(const std::string& text) {
 }
 
 Result<BenchReport> run_bench(const BenchInfo& bench, const BenchOptions& options) {
+  if (auto checked = check_settings(bench, options); !checked) return checked.error();
   auto report = bench.measure(options);
   if (!report) return report.error();
   auto data = origin_of(bench, options);

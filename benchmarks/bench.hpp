@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "holdfast/core/result.hpp"
 
@@ -31,6 +32,7 @@ struct BenchOptions {
   SeedRange seeds;
   double duration_s = 20;  ///< of each simulated drive
   int threads = 1;
+  std::vector<std::string> settings;  ///< module.key=value, over the configuration of each drive
   Progress progress = [](double, const std::string&) {};
 };
 
@@ -48,6 +50,7 @@ struct BenchInfo {
   SeedRange seeds;           ///< what is taken when the command line says nothing
   double duration_s;
   Result<BenchReport> (*measure)(const BenchOptions&);
+  bool takes_settings = false;  ///< runs the system as configured
 };
 
 /// All benches, in the order in which the help shows them.
@@ -58,7 +61,7 @@ Result<const BenchInfo*> find_bench(std::string_view name);
 
 /// Measures, and adds to the result how it came about: command, seeds, CPU, compiler. Figures of
 /// time are those of this machine at this moment; the errors of trajectories are the same on each
-/// run.
+/// run. Settings that the bench does not take, or that are none, are errors.
 Result<BenchReport> run_bench(const BenchInfo& bench, const BenchOptions& options);
 
 /// Writes DIR/NAME.json and DIR/NAME.md; makes DIR.

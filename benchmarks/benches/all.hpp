@@ -37,4 +37,14 @@ Result<BenchReport> measure_deskew(const BenchOptions& options);
 /// increments, time and memory. `threads` drives run at a time, each on one thread.
 Result<BenchReport> measure_odometry(const BenchOptions& options);
 
+/// Whether the pose covariance that map_filter and the graph report is that of their errors: NEES
+/// by axis of the body and the share of instants in its band, over worlds and seeds, each drive in
+/// a survey of its own. A setting `method=...` leaves the other method out. `threads` drives run at
+/// a time, each on one thread.
+Result<BenchReport> measure_consistency(const BenchOptions& options);
+
+/// Table 7 of the article: errors of the whole system and of it without one part at a time, on the
+/// same drives. `threads` drives run at a time, each on one thread.
+Result<BenchReport> measure_ablation(const BenchOptions& options);
+
 }  // namespace holdfast::benchmarks

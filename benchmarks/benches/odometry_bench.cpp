@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -8,6 +7,7 @@
 #include "benchmarks/benches/all.hpp"
 #include "benchmarks/drives/drive_series.hpp"
 #include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/pose_consistency.hpp"
 #include "benchmarks/harness/scratch_folder.hpp"
 #include "benchmarks/harness/table.hpp"
 #include "evaluation/evaluate.hpp"
@@ -30,8 +30,7 @@ struct OdometryDrive : SeriesDrive {
   std::size_t scans = 0, weak = 0;  ///< weak: DEGRADED, some direction not determined
   double memory_mb = 0;             ///< of the local map
   std::vector<double> step_ms;
-  std::array<double, 6> nees{};  ///< mean squared increment errors by their variance, each axis
-  double nees_all = 0;           ///< mean squared Mahalanobis distance, by 6
+  PoseConsistency increments;  ///< from scan to scan, in axes of the body
 
   OdometryDrive() { drift_percent.fill(std::numeric_limits<double>::infinity()); }
 };
@@ -72,22 +71,16 @@ class Judge {
     }
     drive_.ate_m = e->trans_m.rmse;
     drive_.path_m = e->path_m;
-    for (double& axis : drive_.nees) axis /= std::max(increments_, 1.0);
-    drive_.nees_all /= std::max(6.0 * increments_, 1.0);
     return Done{};
   }
 
  private:
   void add_increment(const odometry::Increment& increment, const SE3& truth) {
     const SE3 true_way = last_truth_.inverse() * truth;
-    Eigen::Matrix<double, 6, 1> e;
+    PoseConsistency::Error e;
     e << increment.T_prev_cur.translation - true_way.translation,
         so3::log(true_way.rotation.conjugate() * increment.T_prev_cur.rotation);
-    for (int i = 0; i < 6; ++i) {
-      drive_.nees[static_cast<std::size_t>(i)] += e[i] * e[i] / increment.covariance(i, i);
-    }
-    drive_.nees_all += e.dot(increment.covariance.ldlt().solve(e));
-    ++increments_;
+    drive_.increments.add(e, increment.covariance);
   }
 
   const simulation::Simulation& simulation_;
@@ -95,7 +88,6 @@ class Judge {
   evaluation::Trajectory estimate_;
   evaluation::RunContext context_;
   SE3 last_truth_;
-  double increments_ = 0;
 };
 
 Status drive_and_judge(const DriveSpec& spec, OdometryDrive& drive) {
@@ -103,7 +95,7 @@ Status drive_and_judge(const DriveSpec& spec, OdometryDrive& drive) {
   if (!simulation) return simulation.error();
   auto scratch = ScratchFolder::create();
   if (!scratch) return scratch.error();
-  const auto config = load_robot_config(**simulation, scratch->path());
+  const auto config = load_robot_config(**simulation, spec.settings, scratch->path());
   if (!config) return config.error();
   odometry::Odometry odometry(pipeline::odometry_setup(*config));
   Judge judge(**simulation, drive);
@@ -126,8 +118,10 @@ nlohmann::ordered_json json_of(const OdometryDrive& d) {
   j["path_m"] = known(d.path_m);
   j["breaks"] = d.breaks;
   j["weak_share"] = known(static_cast<double>(d.weak) / static_cast<double>(d.scans));
-  j["nees_per_dimension"] = known(d.nees_all);
-  for (const double axis : d.nees) j["nees_by_axis"].push_back(known(axis));
+  j["nees_per_dimension"] = known(d.increments.of_pose());
+  for (int axis = 0; axis < PoseConsistency::kDimensions; ++axis) {
+    j["nees_by_axis"].push_back(known(d.increments.of_axis(axis)));
+  }
   j["memory_mb"] = d.memory_mb;
   j["step_ms"] = json_of(distribution_of(d.step_ms));
   if (!d.failure.empty()) j["failure"] = d.failure;
@@ -147,7 +141,8 @@ void add_row(const char* scenario, const std::vector<OdometryDrive>& drives, Tab
     row.push_back(fmt::format("{} / {}", percent_text(median), percent_text(worst)));
   }
   const auto ate = median_and_worst(drives, [](const OdometryDrive& d) { return d.ate_m; });
-  const auto nees = median_and_worst(drives, [](const OdometryDrive& d) { return d.nees_all; });
+  const auto nees =
+      median_and_worst(drives, [](const OdometryDrive& d) { return d.increments.of_pose(); });
   std::vector<double> step_ms;
   double breaks = 0, weak = 0, scans = 0, memory = 0;
   for (const OdometryDrive& d : drives) {

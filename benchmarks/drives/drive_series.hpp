@@ -49,7 +49,7 @@ std::vector<DrivesOfScenario<Drive>> measure_series(std::span<const char* const>
   std::size_t done = 0;
   pool.run(all, [&](std::size_t i) {
     Drive& drive = series[i / of_each].drives[i % of_each];
-    const DriveSpec spec{drive.scenario, drive.seed, options.duration_s, 1};
+    const DriveSpec spec{drive.scenario, drive.seed, options.duration_s, 1, options.settings};
     if (const Status status = measure(spec, drive); !status) {
       drive.failure = status.error().message;
     }

@@ -17,11 +17,12 @@ Result<std::unique_ptr<simulation::Simulation>> make_drive(const DriveSpec& spec
 }
 
 Result<pipeline::Config> load_robot_config(simulation::Simulation& drive,
+                                           const std::vector<std::string>& settings,
                                            const std::filesystem::path& dir) {
   const auto file = dir / "config.yaml";
   const std::string text = simulation::robot_config(drive);
   if (auto written = io::write_file_atomically(file, text); !written) return written.error();
-  return pipeline::load_config(file, {});
+  return pipeline::load_config(file, settings);
 }
 
 Result<SurveyedDrive> survey_drive(const DriveSpec& spec, const std::filesystem::path& dir) {
@@ -30,7 +31,7 @@ Result<SurveyedDrive> survey_drive(const DriveSpec& spec, const std::filesystem:
   SurveyedDrive drive;
   drive.simulation = std::move(*simulation);
   drive.map_dir = dir / "map";
-  auto config = load_robot_config(*drive.simulation, dir);
+  auto config = load_robot_config(*drive.simulation, spec.settings, dir);
   if (!config) return config.error();
   drive.config = *config;
   drive.initial_pose = drive.simulation->initial_pose();

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "holdfast/map/map_info.hpp"
 #include "holdfast/pipeline/config.hpp"
@@ -15,6 +16,7 @@ struct DriveSpec {
   std::uint64_t seed = 1;
   double duration_s = 20;
   int threads = 1;  ///< for casting rays and fitting surfaces; the drive does not depend on it
+  std::vector<std::string> settings = {};  ///< module.key=value, over the robot's configuration
 };
 
 /// A simulated drive that has not begun, and all that `holdfast localize` would be given: the map
@@ -32,8 +34,9 @@ Result<SurveyedDrive> survey_drive(const DriveSpec& spec, const std::filesystem:
 /// The same without a map.
 Result<std::unique_ptr<simulation::Simulation>> make_drive(const DriveSpec& spec);
 
-/// The configuration that `holdfast simulate` writes, by way of a file in `dir`.
+/// The configuration that `holdfast simulate` writes, by way of a file in `dir`, with `settings`.
 Result<pipeline::Config> load_robot_config(simulation::Simulation& drive,
+                                           const std::vector<std::string>& settings,
                                            const std::filesystem::path& dir);
 
 /// Runs the drive to its end, into a ROS 1 bag.

@@ -111,6 +111,60 @@ TEST(Report, OfAFailedBenchIsItsError) {
   EXPECT_EQ(report.error().message, "no world to measure in");
 }
 
+TEST(Settings, AreCheckedBeforeTheFirstDrive) {
+  const BenchInfo fixed{"probe", "", {1, 1}, 1, [](const BenchOptions&) -> Result<BenchReport> {
+                          return BenchReport{{{"answer", 42}}, ""};
+                        }};
+  BenchInfo settable = fixed;
+  settable.takes_settings = true;
+  BenchOptions options;
+  options.settings = {"method=graph"};
+  EXPECT_NE(run_bench(fixed, options).error().message.find("takes no --set"), std::string::npos);
+  const auto report = run_bench(settable, options);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_NE(report->markdown.find("--set \"method=graph\""), std::string::npos);
+  options.settings = {"map_filter.gate=1"};
+  EXPECT_NE(run_bench(settable, options).error().message.find("gate_m"), std::string::npos);
+}
+
+TEST(ConsistencyBench, JudgesTheMethodThatIsSet) {
+  BenchOptions options;
+  options.duration_s = 4;
+  options.settings = {"method=graph"};
+  const auto report = run_bench(**find_bench("consistency"), options);
+  ASSERT_TRUE(report) << report.error().message;
+  ASSERT_EQ(report->data["results"].size(), 7U);
+  for (const auto& result : report->data["results"]) {
+    ASSERT_EQ(result["methods"].size(), 1U);
+    const auto& graph = result["methods"][0];
+    EXPECT_EQ(graph["method"], "graph");
+    EXPECT_EQ(graph["claims_without_covariance"], 0);
+    EXPECT_EQ(graph["failed"], 0);
+    EXPECT_EQ(graph["nees_by_axis"].size(), 6U);
+    EXPECT_GT(graph["instants"].get<int>(), 15) << result["scenario"];
+    EXPECT_GT(graph["nees"].get<double>(), 0) << result["scenario"];
+  }
+}
+
+TEST(AblationBench, RunsEveryVariantOnTheSameDrives) {
+  BenchOptions options;
+  options.duration_s = 4;
+  const auto report = run_bench(**find_bench("ablation"), options);
+  ASSERT_TRUE(report) << report.error().message;
+  const auto& results = report->data["results"];
+  ASSERT_GE(results.size(), 3U);
+  EXPECT_EQ(results[0]["variant"], "full");
+  for (const auto& variant : results) {
+    ASSERT_EQ(variant["scenarios"].size(), 3U);
+    for (const auto& scenario : variant["scenarios"]) {
+      EXPECT_FALSE(scenario["drives"][0].contains("failure")) << variant["variant"];
+      if (variant["article_rmse_m"].is_null()) continue;
+      EXPECT_GT(scenario["ate_rmse_worst_m"].get<double>(), 0) << variant["variant"];
+      EXPECT_LT(scenario["ate_rmse_worst_m"].get<double>(), 0.05) << variant["variant"];
+    }
+  }
+}
+
 TEST(SimulatorBench, KeepsItsKeys) {
   BenchOptions options;
   options.duration_s = 0.5;
