@@ -28,6 +28,16 @@ TEST(BenchCommand, NamesTheBenchesWhenAskedForAnotherOne) {
   EXPECT_FALSE(std::filesystem::exists(scratch()));
 }
 
+TEST(BenchCommand, TakesSettingsWhereTheSystemRuns) {
+  const auto unknown = run_program("bench accuracy --set map_filter.gate=1 --out " + scratch());
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_NE(unknown.out.find("map_filter.gate_m"), std::string::npos) << unknown.out;
+  const auto useless = run_program("bench simulator --set method=graph --out " + scratch());
+  EXPECT_EQ(useless.exit_code, 1);
+  EXPECT_NE(useless.out.find("takes no --set"), std::string::npos) << useless.out;
+  EXPECT_FALSE(std::filesystem::exists(scratch()));
+}
+
 TEST(BenchCommand, RefusesSeedsOfAnotherForm) {
   const auto run = run_program("bench step --seeds ten --out " + scratch());
   EXPECT_EQ(run.exit_code, 2);

@@ -1,0 +1,90 @@
+#include <cmath>
+
+#include "holdfast/io/tum_file.hpp"
+#include "tests/interface/workspace.hpp"
+
+/// The options that make a drive harder than its scenario is.
+namespace holdfast::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+class HardDrive : public ::testing::Test {
+ protected:
+  /// The folder of a drive through the office with these options.
+  std::string drive(const std::string& name, const std::string& options) {
+    const std::string to = out / name;
+    last = expect_run("simulate office --seed 4 --duration 5 --out " + to + " " + options, 0);
+    return to;
+  }
+  static std::vector<StampedPose> truth(const std::string& dir) {
+    const auto track = io::read_tum(dir + "/truth.tum");
+    EXPECT_TRUE(track) << track.error().message;
+    return *track;
+  }
+  static double way_m(const std::string& dir) {
+    double sum = 0;
+    const auto track = truth(dir);
+    for (std::size_t i = 1; i < track.size(); ++i) {
+      sum += (track[i].T_map_body.translation - track[i - 1].T_map_body.translation).norm();
+    }
+    return sum;
+  }
+  /// Largest angle between the body's z and the map's.
+  static double tilt_deg(const std::string& dir) {
+    double most = 0;
+    for (const auto& pose : truth(dir)) {
+      const double cosine = (pose.T_map_body.rotation * Eigen::Vector3d::UnitZ()).z();
+      most = std::max(most, std::acos(std::min(cosine, 1.0)) * 180 / M_PI);
+    }
+    return most;
+  }
+  static bool same(const std::string& a, const std::string& b, const std::string& file) {
+    return content(a + "/" + file) == content(b + "/" + file);
+  }
+
+  Workspace out;
+  ProgramRun last;
+};
+
+TEST_F(HardDrive, AChangedWorldIsAnotherOnTheSameWay) {
+  const auto plain = drive("plain", "");
+  EXPECT_EQ(last.out.find("changed since the survey"), std::string::npos) << last.out;
+  const auto changed = drive("changed", "--changed 40%");
+  EXPECT_THAT(last.out, HasSubstr("objects changed since the survey"));
+  EXPECT_FALSE(same(plain, changed, "run.bag"));
+  EXPECT_TRUE(same(plain, changed, "truth.tum"));
+}
+
+TEST_F(HardDrive, SpeedAndWobbleAreThoseOfTheTruth) {
+  const auto plain = drive("plain", "");
+  const auto fast = drive("fast", "--speed 2");
+  const auto rough = drive("rough", "--wobble 3");
+  EXPECT_GT(way_m(fast), 1.5 * way_m(plain));
+  EXPECT_GT(way_m(plain), 0.5);
+  EXPECT_LT(tilt_deg(plain), 0.5);  // a robot on wheels leans a little
+  EXPECT_GT(tilt_deg(rough), 1.5);
+  EXPECT_LT(tilt_deg(rough), 3 * std::sqrt(2.0) + 0.5);  // roll and pitch at once
+}
+
+TEST_F(HardDrive, NoiseOfTheRangesIsInTheLogAndNoiseOfTheMapInTheMap) {
+  const auto plain = drive("plain", "");
+  const auto noisy = drive("noisy", "--range-noise 0.05");
+  const auto rough_map = drive("rough_map", "--map-noise 0.03");
+  EXPECT_THAT(content(noisy + "/config.yaml"), HasSubstr("range_sigma_m: 0.05"));
+  EXPECT_FALSE(same(plain, noisy, "run.bag"));
+  EXPECT_TRUE(same(plain, noisy, "map.pcd"));
+  EXPECT_TRUE(same(plain, rough_map, "run.bag"));
+  EXPECT_FALSE(same(plain, rough_map, "map.pcd"));
+}
+
+TEST_F(HardDrive, HardshipsOutsideOfTheirRangesAreWrongUsage) {
+  for (const char* bad : {"--changed 101", "--changed -1", "--changed much", "--speed 0",
+                          "--speed 11", "--wobble 31", "--range-noise -1", "--map-noise -1"}) {
+    expect_run("simulate office --duration 1 --out " + out / "sim" + " " + bad, 2);
+  }
+  EXPECT_TRUE(out.names().empty());
+}
+
+}  // namespace
+}  // namespace holdfast::testing
