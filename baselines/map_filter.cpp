@@ -116,6 +116,7 @@ void MapFilter::start(StepReport& report) {
 void MapFilter::choose_start(StageClock& clock, StepReport& report) {
   double best_weight = -1;
   FilterState best = state_;
+  bool best_rests = false;
   for (const StartCandidate& start : starts_) {
     state_ = start.state;
     predict(report.pose_time, report);
@@ -124,8 +125,10 @@ void MapFilter::choose_start(StageClock& clock, StepReport& report) {
     if (!update.usable || update.equations.weight <= kClearlyMore * best_weight) continue;
     best_weight = update.equations.weight;
     best = start.state;
+    best_rests = start.rests;
   }
   state_ = best;
+  if (best_rests) rest_.begin();
   starts_.clear();
 }
 
@@ -139,6 +142,7 @@ bool MapFilter::predict(TimeNs to, StepReport& report) {
     biases_before_hold_.reset();
   }
   propagate(state_, segment_, map_.info().gravity_map, setup_.imu);
+  if (rest_.holds(segment_)) filter::Rest::correct(state_);
   return true;
 }
 
@@ -175,7 +179,7 @@ UpdateResult MapFilter::correct(StageClock& clock) {
     // The pose may be off by more than the finest planes reach: let coarser ones lead, too.
     const FilterState direct_state = state_;
     const UpdateResult led = correct_from(sigma > 3.0 * kCoarseFromM ? 2 : 1, predicted, clock);
-    if (led.equations.weight > update.equations.weight) {
+    if (led.equations.weight > kClearlyMore * update.equations.weight) {
       update = led;
     } else {
       state_ = direct_state;
@@ -205,6 +209,7 @@ UpdateResult MapFilter::release_biases(const FilterState& before, const UpdateRe
                                        StageClock& clock, StepReport& report) {
   const FilterState held = state_;
   last_surprise_ = state_.t;
+  rest_.end();
   state_ = before;
   state_.P.diagonal().segment<3>(FilterState::kBa).array() += kAccelBiasJump * kAccelBiasJump;
   state_.P.diagonal().segment<3>(FilterState::kBg).array() += kGyroBiasJump * kGyroBiasJump;
@@ -223,6 +228,7 @@ void MapFilter::track(StageClock& clock, StepReport& report) {
   const FilterState predicted = state_;
   clock.book(Stage::kPredict);
   UpdateResult update = correct(clock);
+  if (!update.usable) rest_.end();  // nobody would notice a start too gentle for the IMU
   if (update.usable && surprised_by_imu(predicted))
     update = release_biases(before, update, clock, report);
   describe(update, report);
@@ -240,7 +246,7 @@ void MapFilter::describe(const UpdateResult& update, StepReport& report) const {
   report.sigma_rot_rad = largest_sigma(state_.P, FilterState::kR);
   report.pose_covariance = state_.P.topLeftCorner<6, 6>();
   if (update.usable) {
-    report.weak_directions = registration::weak_directions(e.H, setup_.filter.weak_sigma_m);
+    report.weak_directions = registration::weak_directions(e, setup_.filter.weak_sigma_m);
   }
 }
 

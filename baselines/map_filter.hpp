@@ -4,6 +4,7 @@
 
 #include "holdfast/core/step_report.hpp"
 #include "holdfast/filter/initial_alignment.hpp"
+#include "holdfast/filter/rest.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 
 namespace holdfast::baselines {
@@ -98,6 +99,7 @@ class MapFilter {
   SelectedScan scan_;
   FilterState state_;
   std::vector<StartCandidate> starts_;  ///< after the first scan, until the second has chosen
+  filter::Rest rest_;
   std::uint64_t scan_number_ = 0;
   int confirmed_ = 0;  ///< scans in agreement since the start
   bool started_ = false;

@@ -19,6 +19,7 @@ struct DescentStage {
 /// the scans that follow, since freedom that the pairs cannot use only leads astray. A fast one's
 /// scan must be unskewed from the first stage on.
 struct Motion {
+  bool rests;
   bool from_skew;
   double level_m_s;  ///< standard deviation of the horizontal velocity
   double vertical_m_s;
@@ -37,14 +38,16 @@ struct Candidate {
   double score = 0;
 };
 
-/// Position and yaw are as uncertain as the user's pose. Coarse pairs would take a table for the
+/// The bounds of the user's pose are taken for three standard deviations of its position: the
+/// pattern's places are 0.7 of the bound apart. Coarse pairs would take a table for the
 /// floor, so that height and tilt (known from gravity) are held until the pairs are fine.
 Matrix15d covariance(const InitialUncertainty& u, const Motion& motion, const SE3& T_map_body,
                      bool coarse) {
   const double tilt_sigma = coarse ? 0.01 : 0.05;
-  const double height_sigma = coarse ? 0.02 : u.position_m;
+  const double position_sigma = u.position_m / 3.0;
+  const double height_sigma = coarse ? 0.02 : position_sigma;
   Matrix15d P = Matrix15d::Zero();
-  P.diagonal().segment<2>(FilterState::kP).setConstant(u.position_m * u.position_m);
+  P.diagonal().segment<2>(FilterState::kP).setConstant(position_sigma * position_sigma);
   P(FilterState::kP + 2, FilterState::kP + 2) = height_sigma * height_sigma;
   // The rotation's error lives in the body frame, the vertical in the map's.
   const Eigen::Vector3d up = T_map_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
@@ -226,9 +229,9 @@ bool is_still(const preprocess::ImuSegment& imu) {
 /// The motions to be tried, the likeliest first.
 std::vector<Motion> motions(const preprocess::ImuSegment& imu, double speed) {
   std::vector<Motion> list;
-  if (is_still(imu)) list.push_back({false, std::min(0.3, speed), std::min(0.05, speed)});
-  list.push_back({false, std::min(1.5, speed), std::min(0.1, speed)});
-  list.push_back({true, speed, std::min(0.5, speed)});
+  if (is_still(imu)) list.push_back({true, false, std::min(0.05, speed), std::min(0.02, speed)});
+  list.push_back({false, false, std::min(1.5, speed), std::min(0.1, speed)});
+  list.push_back({false, true, speed, std::min(0.5, speed)});
   return list;
 }
 
@@ -271,7 +274,7 @@ std::vector<StartCandidate> align_initially(const map::PriorMap& map, const Sele
       const double score = share * plausibility(candidate.state, prior, uncertainty);
       if (score <= best_score) continue;
       best_score = score;
-      best = {candidate.state, share};
+      best = {candidate.state, share, motion.rests};
     }
     if (best.inlier_share > 0) starts.push_back(best);
   }

@@ -15,6 +15,7 @@ struct InitialUncertainty {
 struct StartCandidate {
   FilterState state;
   double inlier_share = 0;  ///< of the selected points, at the finest resolution
+  bool rests = false;       ///< found on the assumption that the robot is at rest
 };
 
 /// Pose and velocity of the body at the end of a scan, from a pose that may be off by

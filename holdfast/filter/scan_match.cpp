@@ -27,7 +27,7 @@ SE3 anchored(const SE3& T_map_body, const ScanPairing& map) {
 
 MapError map_error(const UpdateOptions& options, double span_s, const NormalEquations& equations) {
   const double variance = options.map_sigma_m * options.map_sigma_m;
-  return {registration::feigned_offset(equations.H) + variance * Eigen::Matrix3d::Identity(),
+  return {registration::feigned_offset(equations) + variance * Eigen::Matrix3d::Identity(),
           options.map_sigma_rad, 2.0 * options.map_sigma_m / std::max(span_s, 1e-3)};
 }
 
@@ -72,8 +72,11 @@ const NormalEquations& ScanMatch::linearise(const MatchState& x) {
                    so3::angle_between(x.T_map_body.rotation, paired_.rotation) > kRepairRad;
   if (stale || far) pair(x);
   const double anneal = kAnneal[std::min<std::size_t>(calls_++, kAnneal.size() - 1)];
-  raw_ = registration::linearise(work_.pairs, anchored(x.T_map_body, map_),
-                                 anneal * options_.robust_scale, pool_, work_.partials);
+  const double scale = anneal * options_.robust_scale;
+  const SE3 T_anchor_body = anchored(x.T_map_body, map_);
+  raw_ = registration::linearise(work_.pairs, T_anchor_body, scale, pool_, work_.partials);
+  raw_.feigned = registration::feigned_information(raw_, work_.pairs, T_anchor_body, scale,
+                                                   options_.few_pairs);
   softened_ = raw_;
   // The points still stand where the velocity of the last deskewing put them.
   softened_.g += raw_.H.middleCols<3>(kVelocity) * (x.v_map - deskewed_.v_map);

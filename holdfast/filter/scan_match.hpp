@@ -23,6 +23,7 @@ struct UpdateOptions {
   registration::AssociationOptions association;
   double robust_scale = 3.0;  ///< of the Geman-McClure loss, in sigmas
   int max_iterations = 6;
+  double few_pairs = 20;          ///< so many pairs cannot prove a direction alone (degeneracy.hpp)
   double map_sigma_m = 0.001;     ///< error of the map common to a whole scan, position
   double map_sigma_rad = 0.0001;  ///< and rotation
   /// Let the velocity follow from the skew of the scan too: needed where nothing else tells it (a

@@ -60,6 +60,7 @@ Odometry::Odometry(const Setup& setup)
 
 filter::UpdateOptions Odometry::options() const {
   filter::UpdateOptions o;
+  o.few_pairs = 0;  // a young map has few surfaces: their information is believed
   o.association.gate_m = static_cast<float>(setup_.odometry.gate_m);
   o.association.range_sigma_m = static_cast<float>(setup_.range_sigma_m);
   o.association.surface_sigma_m = static_cast<float>(setup_.odometry.surface_sigma_m);
@@ -141,7 +142,7 @@ Odometry::Passage Odometry::pass(OdometryReport& report) {
   passage.predicted_before = predict(report.step.pose_time, report);
   if (rest_.holds(segment_)) {
     const FilterState moving = state_;
-    passage.predicted_before = Rest::correct(state_) * passage.predicted_before;
+    passage.predicted_before = filter::Rest::correct(state_) * passage.predicted_before;
     gravity_.correct(moving, state_);
   }
   passage.predicted = state_;
@@ -327,7 +328,7 @@ void Odometry::describe(const UpdateResult& update, OdometryReport& report) cons
   step.sigma_trans_m = largest_sigma(Eigen::Matrix3d(drift_.topLeftCorner<3, 3>()));
   step.sigma_rot_rad = largest_sigma(Eigen::Matrix3d(drift_.bottomRightCorner<3, 3>()));
   if (update.usable) {
-    step.weak_directions = registration::weak_directions(e.H, setup_.odometry.weak_sigma_m);
+    step.weak_directions = registration::weak_directions(e, setup_.odometry.weak_sigma_m);
   }
 }
 

@@ -3,11 +3,11 @@
 #include <optional>
 
 #include "holdfast/core/step_report.hpp"
+#include "holdfast/filter/rest.hpp"
 #include "holdfast/odometry/first_motion.hpp"
 #include "holdfast/odometry/gravity_estimate.hpp"
 #include "holdfast/odometry/increment.hpp"
 #include "holdfast/odometry/odometry_config.hpp"
-#include "holdfast/odometry/rest.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 
 namespace holdfast::odometry {
@@ -103,7 +103,7 @@ class Odometry {
 
   Setup setup_;
   GravityEstimate gravity_;
-  Rest rest_;
+  filter::Rest rest_;
   LocalMap map_;
   WorkerPool pool_;
   preprocess::ImuBuffer imu_;

@@ -24,6 +24,8 @@ struct NormalEquations {
   double weight = 0;        ///< sum of robust weights: how many pairs are believed
   double abs_residual = 0;  ///< sum of weight * |distance|, m
   double pairs = 0;         ///< pairs within the gate
+  /// Information about the position that is only seeming (degeneracy.hpp); zero from `linearise`.
+  Eigen::Matrix3d feigned = Eigen::Matrix3d::Zero();
 
   NormalEquations& operator+=(const NormalEquations& other);
 };

@@ -98,7 +98,8 @@ void drop_ghosts(SurfaceGrid& grid, const std::vector<Surface>& surfaces,
   for (const Cell& cell : ghosts) grid.first(cell) = 0;
 }
 
-/// First surface of the neighbour that lies nearest to an empty cell.
+/// First surface of the neighbour that a surface nearest to an empty cell belongs to. All of that
+/// neighbour's surfaces are borrowed, so that a point can tell which of them it is nearest to.
 std::uint32_t borrowed(SurfaceGrid& grid, const std::vector<Surface>& surfaces, const Cell& cell) {
   const Eigen::Vector3f middle =
       ((cell.cast<double>().array() + 0.5) * grid.cell_m()).matrix().cast<float>();
@@ -112,7 +113,7 @@ std::uint32_t borrowed(SurfaceGrid& grid, const std::vector<Surface>& surfaces, 
       const double distance = borrow_distance(surfaces[i - 1], middle, grid.cell_m());
       if (distance < best_distance) {
         best_distance = distance;
-        best = i;
+        best = first;
       }
       if (surfaces[i - 1].more == 0) break;
     }

@@ -289,7 +289,7 @@ void GraphLocalizer::describe(const Match& match, StepReport& report) const {
   report.sigma_rot_rad = largest_sigma(P, NodeState::kR);
   report.pose_covariance = P.topLeftCorner<6, 6>();
   if (match.usable)
-    report.weak_directions = registration::weak_directions(e.H, setup_.start.filter.weak_sigma_m);
+    report.weak_directions = registration::weak_directions(e, setup_.start.filter.weak_sigma_m);
 }
 
 void GraphLocalizer::judge(const Match& match, StepReport& report) const {

@@ -2,7 +2,7 @@
 
 #include "holdfast/filter/filter_state.hpp"
 
-namespace holdfast::odometry {
+namespace holdfast::filter {
 
 /// A robot that stood still at the start stands still until its IMU feels it start. Where the scene
 /// determines a direction badly, nothing else tells it from one that glides evenly, and the biases
@@ -18,7 +18,7 @@ class Rest {
 
   /// The correction of `state` by the knowledge that it stands still; returns the share of its
   /// errors that is left, I - K H.
-  static filter::Matrix15d correct(filter::FilterState& state);
+  static Matrix15d correct(FilterState& state);
 
  private:
   bool rests_ = false;
@@ -27,4 +27,4 @@ class Rest {
   Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();
 };
 
-}  // namespace holdfast::odometry
+}  // namespace holdfast::filter

@@ -1,12 +1,9 @@
-#include "holdfast/odometry/rest.hpp"
+#include "holdfast/filter/rest.hpp"
 
 #include <Eigen/Cholesky>
 
-namespace holdfast::odometry {
+namespace holdfast::filter {
 namespace {
-
-using filter::FilterState;
-using filter::Matrix15d;
 
 constexpr double kFeltForce = 0.05;   // m/s^2
 constexpr double kFeltRate = 0.01;    // rad/s
@@ -15,7 +12,7 @@ constexpr double kRestSigma = 0.005;  // m/s, of what is called standing still
 }  // namespace
 
 bool Rest::holds(const preprocess::ImuSegment& imu) {
-  if (!rests_ || imu.samples.empty() || imu.held_ns > filter::kLongestHold) return rests_ = false;
+  if (!rests_ || imu.samples.empty() || imu.held_ns > kLongestHold) return rests_ = false;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   for (const ImuSample& s : imu.samples) {
@@ -47,4 +44,4 @@ Matrix15d Rest::correct(FilterState& state) {
   return left;
 }
 
-}  // namespace holdfast::odometry
+}  // namespace holdfast::filter
