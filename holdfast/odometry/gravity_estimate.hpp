@@ -28,6 +28,8 @@ class GravityEstimate {
   filter::Matrix15d predict(const filter::FilterState& before, filter::FilterState& predicted);
   /// After a scan has corrected `predicted` to `after`.
   void correct(const filter::FilterState& predicted, const filter::FilterState& after);
+  /// The errors of the state are now `change` times what they were.
+  void change_errors(const filter::Matrix15d& change) { cross_ *= change.transpose(); }
   /// Pose and velocity begin anew; what is known of gravity and biases stays.
   void forget_pose();
   /// The biases' covariance was replaced.

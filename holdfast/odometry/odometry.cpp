@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "holdfast/odometry/local_reference.hpp"
 #include "holdfast/odometry/surroundings/local_pairing.hpp"
 #include "holdfast/odometry/surroundings/sight_lines.hpp"
 #include "holdfast/registration/degeneracy.hpp"
@@ -166,7 +167,7 @@ UpdateResult Odometry::correct_at(int level, const FilterState& predicted, Stage
     how.association.gate_m = std::max(how.association.gate_m, reach);
     how.association.surface_sigma_m = kCoarseSurfaceSigmaM;
   }
-  return update_with_scan(LocalPairing(map_, setup_.odometry.parallel_sine), scan_,
+  return update_with_scan(LocalPairing(map_, setup_.odometry.parallel_sine, settled_), scan_,
                           gravity_.value(), how, pool_, work_, predicted, state_, &clock);
 }
 
@@ -276,6 +277,7 @@ void Odometry::accept(const UpdateResult& update, const Passage& passage, StageC
         scan_.selected.empty() ? "no returns" : "the scan does not fit the local map";
     return;
   }
+  count_from_here(state_, gravity_);
   sigma_at_scan_m_ = largest_sigma(state_.P, FilterState::kP);
   const double memory = keyframes_ == 0 ? 1.0 : kShareMemory;
   usual_share_ += memory * (report.step.inlier_share - usual_share_);
@@ -293,7 +295,10 @@ void Odometry::extend_map() {
       turn < setup_.odometry.keyframe_deg * std::numbers::pi / 180.0) {
     return;
   }
-  if (keyframes_ == kSettledKeyframes) map_.set_least_lines(kLinesOfAPlane);
+  if (keyframes_ == kSettledKeyframes) {
+    map_.set_least_lines(kLinesOfAPlane);
+    settled_ = true;
+  }
   map_.insert(work_.points.points, state_.T_map_body, scan_.T_body_lidar.translation,
               static_cast<std::size_t>(setup_.odometry.max_inserted), scan_number_);
   last_keyframe_ = state_.T_map_body;

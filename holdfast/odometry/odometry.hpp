@@ -116,6 +116,7 @@ class Odometry {
   std::uint64_t scan_number_ = 0;
   int epoch_ = 0;
   int keyframes_ = 0;         ///< of this epoch
+  bool settled_ = false;      ///< the motion is known well, and the map by it
   int contradictions_ = 0;    ///< scans in a row
   double usual_share_ = 0;    ///< of inliers, running mean
   double usual_through_ = 0;  ///< of points behind walls, likewise

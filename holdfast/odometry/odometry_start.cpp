@@ -58,6 +58,7 @@ void Odometry::wait_for_returns(OdometryReport& report) {
     return;
   }
   keyframes_ = contradictions_ = 0;
+  settled_ = false;
   usual_share_ = usual_through_ = 0;
   drift_.setZero();
   map_.set_least_lines(kLinesOfAPlane);
@@ -81,7 +82,7 @@ void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
   const double dt = to_seconds(report.step.pose_time - state_.t);
   FirstMotion motion = FirstMotion::kNone;
   if (!scan_.selected.empty() && dt * setup_.fastest_m_s < kLongestFirstWayM) {
-    const LocalPairing pairing(map_, setup_.odometry.parallel_sine);
+    const LocalPairing pairing(map_, setup_.odometry.parallel_sine, false);
     motion = find_first_motion(first_, scan_, report.step.pose_time, setup_.fastest_m_s,
                                gravity_.value(), options(), pairing, pool_, map_, work_);
   }

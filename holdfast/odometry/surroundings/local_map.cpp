@@ -30,6 +30,8 @@ constexpr float kBeamsPerSlope = 57.0F;  // beams are told apart at a degree
 constexpr double kOtherPlaceM = 0.2;     // from which the lines are others
 constexpr float kAngleSigma = 0.0005F;   // error of the rotation, rad
 constexpr double kLeastRadiusM = 10.0;
+constexpr float kFirmSupport = 20;  // points of a plane that is firm
+constexpr int kFirmLines = 3;       // and lines: the third tells whether two lie on a plane
 constexpr double kNearlyFull = 0.95, kRoomy = 0.7;
 
 }  // namespace
@@ -140,15 +142,16 @@ void LocalMap::fit(const Layer& layer, Cell& cell) const {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(scatter / cell.weight);
   const Eigen::Vector3f variance = solver.eigenvalues().cwiseMax(1e-8).cast<float>();
-  const Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>().normalized();
+  Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>().normalized();
   const float n = cell.weight;
   // Noise across the plane as its points were seen.
   const Eigen::Vector3f ray = cell.mean - cell.seen_from;
-  const float past = std::abs(normal.dot(ray));
+  if (normal.dot(ray) > 0) normal = -normal;
+  const float past = -normal.dot(ray);
   const float noise = range_variance_ * past * past / ray.squaredNorm() + kFloorM * kFloorM +
                       kAngleSigma * kAngleSigma * ray.squaredNorm();
   const auto slack = static_cast<float>(config_.noise_slack * config_.noise_slack);
-  cell.is_plane = false;
+  cell.is_plane = cell.is_firm = false;
   if (std::popcount(cell.lines) < least_lines_) return;
   if (variance[0] > slack * noise * (1.0F + 2.0F * std::sqrt(2.0F / n))) return;
   if (past < kFanM || past < kFanSine * ray.norm()) return;
@@ -160,6 +163,10 @@ void LocalMap::fit(const Layer& layer, Cell& cell) const {
   const auto most = static_cast<float>(config_.plane_sigma_m);
   const auto most_tilt = static_cast<float>(config_.tilt_sigma_rad);
   cell.is_plane = sigma_sq < most * most && tilt < most_tilt * most_tilt;
+  // Firm: the tilt is known without trust in the luck of few points.
+  const float tilt_at_worst = std::max(variance[0], noise) / (n - 3.0F) / variance[1];
+  cell.is_firm = cell.is_plane && n >= kFirmSupport && std::popcount(cell.lines) >= kFirmLines &&
+                 tilt_at_worst < most_tilt * most_tilt;
   cell.surface = {cell.mean,
                   normal,
                   std::sqrt(sigma_sq),

@@ -31,6 +31,7 @@ class LocalMap {
   struct Hit {
     const map::Surface* surface = nullptr;
     Eigen::Vector3f corner = Eigen::Vector3f::Zero();  ///< centre of the cell, from the anchor
+    bool firm = false;  ///< the plane has stood the test of points that it does not follow from
   };
   /// Level 0: the plane of the largest cell around `p` (relative to the anchor, metres) that is
   /// one. Level 1: that of the largest cells alone, however far off its plane `p` may be.
@@ -41,7 +42,8 @@ class LocalMap {
       const Eigen::Vector3i cell = (p * layer.cells_per_m).array().floor().cast<int>();
       const std::uint32_t at = layer.table.find(cell_key(cell + layer.anchor_cell));
       if (at == CellTable::kNone || !layer.cells[at].is_plane) continue;
-      return {&layer.cells[at].surface, (cell.cast<float>().array() + 0.5F) * layer.cell_m};
+      return {&layer.cells[at].surface, (cell.cast<float>().array() + 0.5F) * layer.cell_m,
+              layer.cells[at].is_firm};
     }
     return {};
   }
@@ -85,6 +87,7 @@ class LocalMap {
     float refit_at = 0;  ///< weight from which on the plane is fitted anew
     std::uint64_t key = 0;
     bool is_plane = false;
+    bool is_firm = false;
     bool in_use = false;
   };
   struct Layer {

@@ -1,6 +1,7 @@
 #include "holdfast/odometry/surroundings/local_pairing.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "holdfast/registration/degeneracy.hpp"
@@ -8,8 +9,13 @@
 namespace holdfast::odometry {
 namespace {
 
-constexpr double kWeakShare = 0.02;    // of all information, below which a direction is weak
+constexpr double kWeakShare = 0.02;  // of all information, below which a direction is weak
+constexpr int kManyPlanes = 10;
 constexpr double kRobustScale = 12.0;  // wide: the pose is still a prediction
+
+float dot_normal(const Eigen::Vector3f& u, const registration::Correspondences& c, std::size_t i) {
+  return u.x() * c.nx[i] + u.y() * c.ny[i] + u.z() * c.nz[i];
+}
 
 /// Takes `u` out of the normals that are at right angles to it but for `sine`; the distances at
 /// `T_anchor_body` stay as they are.
@@ -19,7 +25,7 @@ void take_out(const Eigen::Vector3f& u, float sine, const SE3& T_anchor_body,
       (T_anchor_body.rotation.conjugate() * u.cast<double>()).cast<float>();
   const float place = u.dot(T_anchor_body.translation.cast<float>());
   for (std::size_t i = 0; i < c.size(); ++i) {
-    float along = u.x() * c.nx[i] + u.y() * c.ny[i] + u.z() * c.nz[i];
+    float along = dot_normal(u, c, i);
     along = std::abs(along) < sine ? along : 0.0F;
     const float at = u_body.x() * c.px[i] + u_body.y() * c.py[i] + u_body.z() * c.pz[i] + place;
     c.nx[i] -= along * u.x();
@@ -29,22 +35,90 @@ void take_out(const Eigen::Vector3f& u, float sine, const SE3& T_anchor_body,
   }
 }
 
+/// A thin thing has two faces: what is seen of it from behind is not the plane that was seen from
+/// before. Returns the number of pairs that are left.
+std::size_t drop_seen_from_behind(const SE3& T_anchor_body, const Eigen::Vector3d& p_body_lidar,
+                                  registration::Correspondences& c) {
+  const Eigen::Vector3f lidar = (T_anchor_body * p_body_lidar).cast<float>();
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    const float before = c.nx[i] * lidar.x() + c.ny[i] * lidar.y() + c.nz[i] * lidar.z();
+    c.information[i] = before > c.offset[i] ? c.information[i] : 0.0F;
+    left += c.information[i] > 0 ? 1 : 0;
+  }
+  return left;
+}
+
+/// A pair that speaks about a weak direction, and the plane that it was paired with.
+struct Witness {
+  const map::Surface* plane;
+  std::size_t pair;
+  bool firm;
+};
+
+using Witnesses = std::vector<Witness>;
+
+/// Those of `u`, plane by plane.
+void find_witnesses(const LocalMap& map, int level, const Eigen::Vector3f& u, float sine,
+                    const SE3& T_anchor_body, const registration::Correspondences& c,
+                    Witnesses& witnesses) {
+  const Eigen::Matrix3f R = T_anchor_body.rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f t = T_anchor_body.translation.cast<float>();
+  witnesses.clear();
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    if (!(c.information[i] > 0) || std::abs(dot_normal(u, c, i)) < sine) continue;
+    const LocalMap::Hit hit = map.find(level, R * Eigen::Vector3f(c.px[i], c.py[i], c.pz[i]) + t);
+    witnesses.push_back({hit.surface, i, hit.firm});
+  }
+  std::stable_sort(witnesses.begin(), witnesses.end(), [](const Witness& a, const Witness& b) {
+    return std::less<>()(a.plane, b.plane);
+  });
+}
+
+Witnesses::const_iterator end_of_plane(Witnesses::const_iterator begin, const Witnesses& all) {
+  return std::find_if(begin, all.end(), [&](const Witness& w) { return w.plane != begin->plane; });
+}
+
+/// Many planes would have to err alike. Of a few, only those that are firm prove anything, and the
+/// points of one share its error: however many they are, they know no more than it does.
+void doubt_few(const Witnesses& witnesses, registration::Correspondences& c) {
+  int planes = 0;
+  for (auto at = witnesses.begin(); at != witnesses.end(); at = end_of_plane(at, witnesses)) {
+    ++planes;
+  }
+  if (planes >= kManyPlanes) return;
+  for (auto at = witnesses.begin(); at != witnesses.end();) {
+    const auto end = end_of_plane(at, witnesses);
+    const auto others = static_cast<float>(end - at - 1);
+    for (; at != end; ++at) {
+      float& information = c.information[at->pair];
+      const float shared = at->plane->sigma_m * at->plane->sigma_m;
+      information = at->firm ? 1.0F / (1.0F / information + others * shared) : 0.0F;
+    }
+  }
+}
+
 }  // namespace
 
 std::size_t LocalPairing::associate(const SE3& T_anchor_body, const Eigen::Vector3d& p_body_lidar,
                                     const registration::BodyPoints& points,
                                     const registration::AssociationOptions& options,
                                     WorkerPool& pool, registration::Correspondences& out) const {
-  const std::size_t pairs =
-      registration::associate(map_, T_anchor_body, p_body_lidar, points, options, pool, out);
+  registration::associate(map_, T_anchor_body, p_body_lidar, points, options, pool, out);
+  const std::size_t pairs = drop_seen_from_behind(T_anchor_body, p_body_lidar, out);
   const auto equations = registration::linearise(out, T_anchor_body, kRobustScale, pool, partials_);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
       registration::position_information(equations.H));
   const double least = kWeakShare * solver.eigenvalues().sum();
+  Witnesses witnesses;
   for (int i = 0; i < 2; ++i) {
     if (solver.eigenvalues()[i] >= least) break;
-    take_out(solver.eigenvectors().col(i).cast<float>(), static_cast<float>(parallel_sine_),
-             T_anchor_body, out);
+    const Eigen::Vector3f u = solver.eigenvectors().col(i).cast<float>();
+    const auto sine = static_cast<float>(parallel_sine_);
+    take_out(u, sine, T_anchor_body, out);
+    if (!settled_) continue;
+    find_witnesses(map_, options.level, u, sine, T_anchor_body, out, witnesses);
+    doubt_few(witnesses, out);
   }
   return pairs;
 }
