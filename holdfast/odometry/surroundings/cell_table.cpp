@@ -15,7 +15,7 @@ void CellTable::reset(std::size_t capacity) {
 void CellTable::insert(std::uint64_t key, std::uint32_t index) {
   std::size_t slot = home(key);
   while (entries_[slot].index != kNone) slot = (slot + 1) & mask_;
-  entries_[slot] = {key, index};
+  entries_[slot] = {key, index, 0};
 }
 
 void CellTable::erase(std::uint64_t key) {

@@ -29,30 +29,36 @@ class CellTable {
  public:
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
+  struct Entry {
+    std::uint64_t key = UINT64_MAX;  // no cell has this key
+    std::uint32_t index = kNone;
+    std::uint32_t flags = 0;  ///< the owner's, so that it need not look at the cell for them
+  };
+
   /// Makes room for `capacity` entries and forgets all.
   void reset(std::size_t capacity);
 
-  /// Index stored with `key`; kNone if there is none.
-  std::uint32_t find(std::uint64_t key) const {
+  /// The entry of `key`; one with the index kNone if there is none.
+  const Entry& look_up(std::uint64_t key) const {
     for (std::size_t slot = home(key);; slot = (slot + 1) & mask_) {
       const Entry& entry = entries_[slot];
-      if (entry.key == key) return entry.index;
-      if (entry.index == kNone) return kNone;
+      if (entry.key == key || entry.index == kNone) return entry;
     }
   }
+  /// Index stored with `key`; kNone if there is none.
+  std::uint32_t find(std::uint64_t key) const { return look_up(key).index; }
   /// `key` must not be there yet; the number of entries stays within the capacity.
   void insert(std::uint64_t key, std::uint32_t index);
+  /// `key` must be there.
+  void set_flags(std::uint64_t key, std::uint32_t flags) {
+    entries_[static_cast<std::size_t>(&look_up(key) - entries_.data())].flags = flags;
+  }
   /// `key` must be there.
   void erase(std::uint64_t key);
 
   std::size_t memory_bytes() const { return entries_.size() * sizeof(Entry); }
 
  private:
-  struct Entry {
-    std::uint64_t key = UINT64_MAX;  // no cell has this key
-    std::uint32_t index = kNone;
-  };
-
   std::size_t home(std::uint64_t key) const {
     return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ULL) >> shift_);
   }

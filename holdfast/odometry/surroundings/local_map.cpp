@@ -43,6 +43,7 @@ LocalMap::LocalMap(const LocalMapConfig& config, double range_sigma_m)
     layer.cell_m = static_cast<float>(config.cell_m) * static_cast<float>(1U << i);
     layer.cells_per_m = 1.0F / layer.cell_m;
     layer.cells.resize(kCapacity[i]);
+    layer.surfaces.resize(kCapacity[i]);
     layer.free.reserve(kCapacity[i]);
   }
   clear();
@@ -51,9 +52,9 @@ LocalMap::LocalMap(const LocalMapConfig& config, double range_sigma_m)
 void LocalMap::clear() {
   for (Layer& layer : layers_) {
     layer.table.reset(layer.cells.size());
+    layer.keys.assign(layer.cells.size(), kNoCell);
     layer.free.clear();
     for (std::size_t i = layer.cells.size(); i-- > 0;) {
-      layer.cells[i].in_use = false;
       layer.free.push_back(static_cast<std::uint32_t>(i));
     }
     layer.swept = 0;
@@ -93,7 +94,9 @@ void LocalMap::insert(const std::vector<Eigen::Vector3f>& points, const SE3& T_o
 void LocalMap::add(Layer& layer, const Sighting& seen) {
   const Eigen::Vector3i local = (seen.p * layer.cells_per_m).array().floor().cast<int>();
   const std::uint64_t key = cell_key(local + layer.anchor_cell);
-  std::uint32_t at = layer.table.find(key);
+  const CellTable::Entry& entry = layer.table.look_up(key);
+  if ((entry.flags & kFull) != 0) return;
+  std::uint32_t at = entry.index;
   if (at == CellTable::kNone) {
     if (layer.free.empty()) {
       ++refused_;
@@ -102,17 +105,22 @@ void LocalMap::add(Layer& layer, const Sighting& seen) {
     at = layer.free.back();
     layer.free.pop_back();
     layer.table.insert(key, at);
+    layer.keys[at] = key;
     layer.cells[at] = Cell{};
-    layer.cells[at].key = key;
-    layer.cells[at].in_use = true;
     layer.cells[at].refit_at = kFirstFit;
   }
   const Eigen::Vector3f centre = (local.cast<float>().array() + 0.5F) * layer.cell_m;
-  add_to(layer, layer.cells[at], {seen.p - centre, seen.lidar - centre, seen.weight, seen.line});
+  Cell& cell = layer.cells[at];
+  const bool grown = add_to(cell, {seen.p - centre, seen.lidar - centre, seen.weight, seen.line});
+  std::uint32_t flags = grown ? fit(layer, cell, layer.surfaces[at]) : cell.flags;
+  if (cell.weight >= static_cast<float>(config_.full_weight)) flags |= kFull;
+  if (flags == cell.flags) return;
+  cell.flags = flags;
+  layer.table.set_flags(key, flags);
 }
 
-void LocalMap::add_to(const Layer& layer, Cell& cell, const Sighting& seen) {
-  if (cell.weight >= static_cast<float>(config_.full_weight)) return;
+/// True where the plane is to be fitted anew.
+bool LocalMap::add_to(Cell& cell, const Sighting& seen) const {
   // West's running moments: nothing cancels.
   const float sum = cell.weight + seen.weight;
   const Eigen::Vector3f d = seen.p - cell.mean;
@@ -128,13 +136,14 @@ void LocalMap::add_to(const Layer& layer, Cell& cell, const Sighting& seen) {
   cell.scatter[5] += w * d.z() * d.z();
   cell.lines |= seen.line;
   cell.weight = sum;
-  if (sum >= cell.refit_at) fit(layer, cell);
+  return sum >= cell.refit_at;
 }
 
 /// Points of one beam that bends round a corner, or runs along a wall with its noise, lie in the
 /// plane in which the beam turns. It would travel with the LiDAR and hold it back; a wall is known
 /// from it by passing the LiDAR at a distance.
-void LocalMap::fit(const Layer& layer, Cell& cell) const {
+/// Returns the flags of the cell.
+std::uint32_t LocalMap::fit(const Layer& layer, Cell& cell, map::Surface& surface) const {
   cell.refit_at = kGrowth * cell.weight;
   const auto& s = cell.scatter;
   Eigen::Matrix3d scatter;
@@ -151,10 +160,9 @@ void LocalMap::fit(const Layer& layer, Cell& cell) const {
   const float noise = range_variance_ * past * past / ray.squaredNorm() + kFloorM * kFloorM +
                       kAngleSigma * kAngleSigma * ray.squaredNorm();
   const auto slack = static_cast<float>(config_.noise_slack * config_.noise_slack);
-  cell.is_plane = cell.is_firm = false;
-  if (std::popcount(cell.lines) < least_lines_) return;
-  if (variance[0] > slack * noise * (1.0F + 2.0F * std::sqrt(2.0F / n))) return;
-  if (past < kFanM || past < kFanSine * ray.norm()) return;
+  if (std::popcount(cell.lines) < least_lines_) return 0;
+  if (variance[0] > slack * noise * (1.0F + 2.0F * std::sqrt(2.0F / n))) return 0;
+  if (past < kFanM || past < kFanSine * ray.norm()) return 0;
   // Error of the plane over the cell: of its offset, and of its two tilts at a typical lever.
   const float scale = std::max(variance[0], 0.5F * noise) / n;
   const float tilt = scale / variance[1];
@@ -162,17 +170,18 @@ void LocalMap::fit(const Layer& layer, Cell& cell) const {
   const float sigma_sq = scale + lever_sq * (tilt + scale / variance[2]);
   const auto most = static_cast<float>(config_.plane_sigma_m);
   const auto most_tilt = static_cast<float>(config_.tilt_sigma_rad);
-  cell.is_plane = sigma_sq < most * most && tilt < most_tilt * most_tilt;
+  if (sigma_sq >= most * most || tilt >= most_tilt * most_tilt) return 0;
   // Firm: the tilt is known without trust in the luck of few points.
   const float tilt_at_worst = std::max(variance[0], noise) / (n - 3.0F) / variance[1];
-  cell.is_firm = cell.is_plane && n >= kFirmSupport && std::popcount(cell.lines) >= kFirmLines &&
-                 tilt_at_worst < most_tilt * most_tilt;
-  cell.surface = {cell.mean,
-                  normal,
-                  std::sqrt(sigma_sq),
-                  static_cast<std::uint16_t>(std::min(n, 65535.0F)),
-                  map::SurfaceKind::kPlane,
-                  0};
+  const bool firm = n >= kFirmSupport && std::popcount(cell.lines) >= kFirmLines &&
+                    tilt_at_worst < most_tilt * most_tilt;
+  surface = {cell.mean,
+             normal,
+             std::sqrt(sigma_sq),
+             static_cast<std::uint16_t>(std::min(n, 65535.0F)),
+             map::SurfaceKind::kPlane,
+             0};
+  return firm ? kPlane | kFirm : kPlane;
 }
 
 void LocalMap::set_anchor(const Eigen::Vector3d& p_odom) {
@@ -197,12 +206,12 @@ void LocalMap::forget_far(Layer& layer, const Eigen::Vector3d& p_odom) {
   const double most = layer.radius_m * layer.radius_m;
   for (std::size_t k = 0; k < layer.cells.size() / kSweepScans; ++k) {
     layer.swept = layer.swept + 1 < layer.cells.size() ? layer.swept + 1 : 0;
-    Cell& cell = layer.cells[layer.swept];
-    if (!cell.in_use) continue;
-    const Eigen::Vector3d p = cell_of(cell.key).cast<double>() * static_cast<double>(layer.cell_m);
+    std::uint64_t& key = layer.keys[layer.swept];
+    if (key == kNoCell) continue;
+    const Eigen::Vector3d p = cell_of(key).cast<double>() * static_cast<double>(layer.cell_m);
     if ((p - p_odom).squaredNorm() <= most) continue;
-    layer.table.erase(cell.key);
-    cell.in_use = false;
+    layer.table.erase(key);
+    key = kNoCell;
     layer.free.push_back(static_cast<std::uint32_t>(layer.swept));
   }
 }
@@ -211,6 +220,8 @@ std::size_t LocalMap::memory_bytes() const {
   std::size_t bytes = sizeof(*this);
   for (const Layer& layer : layers_) {
     bytes += layer.table.memory_bytes() + layer.cells.capacity() * sizeof(Cell) +
+             layer.surfaces.capacity() * sizeof(map::Surface) +
+             layer.keys.capacity() * sizeof(std::uint64_t) +
              layer.free.capacity() * sizeof(std::uint32_t);
   }
   return bytes;

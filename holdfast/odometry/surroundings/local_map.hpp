@@ -40,10 +40,10 @@ class LocalMap {
     for (std::size_t i = kSizes; i-- > last;) {
       const Layer& layer = layers_[i];
       const Eigen::Vector3i cell = (p * layer.cells_per_m).array().floor().cast<int>();
-      const std::uint32_t at = layer.table.find(cell_key(cell + layer.anchor_cell));
-      if (at == CellTable::kNone || !layer.cells[at].is_plane) continue;
-      return {&layer.cells[at].surface, (cell.cast<float>().array() + 0.5F) * layer.cell_m,
-              layer.cells[at].is_firm};
+      const CellTable::Entry& entry = layer.table.look_up(cell_key(cell + layer.anchor_cell));
+      if ((entry.flags & kPlane) == 0) continue;
+      return {&layer.surfaces[entry.index], (cell.cast<float>().array() + 0.5F) * layer.cell_m,
+              (entry.flags & kFirm) != 0};
     }
     return {};
   }
@@ -75,29 +75,31 @@ class LocalMap {
   std::size_t memory_bytes() const;
 
  private:
-  /// Points of one cell, relative to its centre.
-  struct Cell {
-    map::Surface surface{
-        Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), 0, 0, map::SurfaceKind::kClutter, 0};
+  /// What is known of a cell without looking at it.
+  enum Flag : std::uint32_t { kPlane = 1, kFirm = 2, kFull = 4 };
+  static constexpr std::uint64_t kNoCell = UINT64_MAX;
+
+  /// Points of one cell, relative to its centre: a line of the cache.
+  struct alignas(64) Cell {
     Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-    Eigen::Vector3f seen_from = Eigen::Vector3f::Zero();  ///< mean place of the LiDAR
-    std::array<float, 6> scatter{};  ///< sums of products about the mean: xx, xy, xz, yy, yz, zz
-    std::uint32_t lines = 0;         ///< bits of the lines that its points lie on
     float weight = 0;
-    float refit_at = 0;  ///< weight from which on the plane is fitted anew
-    std::uint64_t key = 0;
-    bool is_plane = false;
-    bool is_firm = false;
-    bool in_use = false;
+    std::array<float, 6> scatter{};  ///< sums of products about the mean: xx, xy, xz, yy, yz, zz
+    Eigen::Vector3f seen_from = Eigen::Vector3f::Zero();  ///< mean place of the LiDAR
+    std::uint32_t lines = 0;  ///< bits of the lines that its points lie on
+    float refit_at = 0;       ///< weight from which on the plane is fitted anew
+    std::uint32_t flags = 0;  ///< as in the table
   };
+  static_assert(sizeof(Cell) == 64);
   struct Layer {
     float cell_m = 0, cells_per_m = 0;
     Eigen::Vector3i anchor_cell = Eigen::Vector3i::Zero();
     CellTable table;
     std::vector<Cell> cells;
-    std::vector<std::uint32_t> free;  ///< indices into cells
-    std::size_t swept = 0;            ///< where forgetting goes on
-    double radius_m = 0;              ///< smaller than configured while room is short
+    std::vector<map::Surface> surfaces;  ///< of the cells with the same index
+    std::vector<std::uint64_t> keys;     ///< likewise; kNoCell where a cell is free
+    std::vector<std::uint32_t> free;     ///< indices into cells
+    std::size_t swept = 0;               ///< where forgetting goes on
+    double radius_m = 0;                 ///< smaller than configured while room is short
 
     std::size_t used() const { return cells.size() - free.size(); }
   };
@@ -109,8 +111,8 @@ class LocalMap {
     std::uint32_t line;  ///< a bit of the beam and of the place that it was seen from
   };
   void add(Layer& layer, const Sighting& seen);
-  void add_to(const Layer& layer, Cell& cell, const Sighting& seen);
-  void fit(const Layer& layer, Cell& cell) const;
+  bool add_to(Cell& cell, const Sighting& seen) const;
+  std::uint32_t fit(const Layer& layer, Cell& cell, map::Surface& surface) const;
   void forget_far(Layer& layer, const Eigen::Vector3d& p_odom);
   void set_anchor(const Eigen::Vector3d& p_odom);
 
