@@ -83,7 +83,8 @@ TEST(LocalPairing, AThinPanelSeenFromBehindIsNotTheFaceThatWasSeenFromBefore) {
 /// What one line and a point or two beside it make of a floor: a plane that leans along the axis.
 std::vector<Vector3f> leaning() {
   std::vector<Vector3f> points;
-  for (int i = 0; i < 5; ++i) points.emplace_back(2.4F, -0.4F + 0.2F * i, -1.0F);
+  for (int i = 0; i < 5; ++i)
+    points.emplace_back(2.4F, -0.4F + 0.2F * static_cast<float>(i), -1.0F);
   points.emplace_back(2.6F, 0.0F, -0.92F);
   points.emplace_back(2.6F, 0.02F, -0.92F);
   return points;
@@ -101,7 +102,8 @@ TEST(LocalPairing, APlaneOfAHandfulOfPointsIsNoWitnessAlongATunnel) {
   all.insert(all.end(), few.begin(), few.end());
   seen.map.insert(all, {}, Vector3d::Zero());
   std::vector<Vector3f> scan = tube(11);
-  for (int i = 0; i < 20; ++i) scan.emplace_back(2.4F, -0.4F + 0.04F * i, -1.0F);
+  for (int i = 0; i < 20; ++i)
+    scan.emplace_back(2.4F, -0.4F + 0.04F * static_cast<float>(i), -1.0F);
   seen.pair(scan, {});
   ASSERT_GT(seen.count, bare / 2);
   // Nothing stands across this tunnel; what normals feign is below 1 / (0.1 m)^2.

@@ -5,19 +5,11 @@
 #include <bit>
 #include <cmath>
 
-#include "holdfast/registration/associate.hpp"
-
-template std::size_t holdfast::registration::associate(const odometry::LocalMap& map,
-                                                       const SE3& T_anchor_body,
-                                                       const Eigen::Vector3d& p_body_lidar,
-                                                       const BodyPoints& points,
-                                                       const AssociationOptions& options,
-                                                       WorkerPool& pool, Correspondences& out);
-
 namespace holdfast::odometry {
 namespace {
 
 constexpr std::array<std::size_t, LocalMap::kSizes> kCapacity = {1U << 17, 1U << 16, 1U << 15};
+constexpr std::size_t kBlock = 64;         // points that go into the map together
 constexpr std::size_t kSweepScans = 64;    // until all cells have been looked at
 constexpr double kAnchorReachM = 32.0;     // from the robot; float is good to 4 micrometres there
 constexpr float kRangeOfHalfWeightM = 40;  // 0.5 mrad are as much as the noise of a range
@@ -87,12 +79,33 @@ void LocalMap::insert(const std::vector<Eigen::Vector3f>& points, const SE3& T_o
     const auto beam = static_cast<std::uint32_t>(
         static_cast<std::int32_t>(std::floor(std::clamp(slope, -1e6F, 1e6F))));
     const Sighting seen{R * q + t, lidar_in_map, weight, 1U << ((beam + 7 * place_) % 32)};
-    for (Layer& layer : layers_) add(layer, seen);
+    block_.push_back(seen);
+    if (block_.size() < kBlock) continue;
+    add(block_);
+    block_.clear();
+  }
+  add(block_);
+  block_.clear();
+}
+
+/// Cells lie anywhere in memory: what all points of a block need is fetched at the same time.
+void LocalMap::add(const std::vector<Sighting>& seen) {
+  for (const Sighting& s : seen) {
+    for (const Layer& layer : layers_) layer.table.prefetch(layer.key_of(s.p));
+  }
+  for (const Sighting& s : seen) {
+    for (const Layer& layer : layers_) {
+      const CellTable::Entry& entry = layer.table.look_up(layer.key_of(s.p));
+      if (entry.index != CellTable::kNone) __builtin_prefetch(&layer.cells[entry.index], 1);
+    }
+  }
+  for (const Sighting& s : seen) {
+    for (Layer& layer : layers_) add(layer, s);
   }
 }
 
 void LocalMap::add(Layer& layer, const Sighting& seen) {
-  const Eigen::Vector3i local = (seen.p * layer.cells_per_m).array().floor().cast<int>();
+  const Eigen::Vector3i local = layer.cell_of(seen.p);
   const std::uint64_t key = cell_key(local + layer.anchor_cell);
   const CellTable::Entry& entry = layer.table.look_up(key);
   if ((entry.flags & kFull) != 0) return;

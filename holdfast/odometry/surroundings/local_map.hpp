@@ -20,7 +20,7 @@ namespace holdfast::odometry {
 /// points are too few or on less than three lines (two lines lie on a plane whatever they were
 /// drawn on), and where they are thicker than the noise of ranges explains.
 ///
-/// A SurfaceMap: registration::associate and filter::update_with_scan take it like a prior map.
+/// A SurfaceMap; LocalPairing pairs scans with it.
 class LocalMap {
  public:
   static constexpr std::size_t kSizes = 3;  ///< of cells, each twice the one before
@@ -39,13 +39,19 @@ class LocalMap {
     const std::size_t last = level == 0 ? 0 : kSizes - 1;
     for (std::size_t i = kSizes; i-- > last;) {
       const Layer& layer = layers_[i];
-      const Eigen::Vector3i cell = (p * layer.cells_per_m).array().floor().cast<int>();
+      const Eigen::Vector3i cell = layer.cell_of(p);
       const CellTable::Entry& entry = layer.table.look_up(cell_key(cell + layer.anchor_cell));
       if ((entry.flags & kPlane) == 0) continue;
       return {&layer.surfaces[entry.index], (cell.cast<float>().array() + 0.5F) * layer.cell_m,
               (entry.flags & kFirm) != 0};
     }
     return {};
+  }
+
+  /// Has the memory fetched that find(level, p) will need first.
+  void prefetch(int level, const Eigen::Vector3f& p) const {
+    const std::size_t last = level == 0 ? kSizes - 2 : kSizes - 1;
+    for (std::size_t i = kSizes; i-- > last;) layers_[i].table.prefetch(layers_[i].key_of(p));
   }
 
   /// A place near the robot in the odometry's frame; positions count from it in float.
@@ -101,6 +107,12 @@ class LocalMap {
     std::size_t swept = 0;               ///< where forgetting goes on
     double radius_m = 0;                 ///< smaller than configured while room is short
 
+    Eigen::Vector3i cell_of(const Eigen::Vector3f& p) const {
+      return (p * cells_per_m).array().floor().cast<int>();
+    }
+    std::uint64_t key_of(const Eigen::Vector3f& p) const {
+      return cell_key(cell_of(p) + anchor_cell);
+    }
     std::size_t used() const { return cells.size() - free.size(); }
   };
 
@@ -110,6 +122,7 @@ class LocalMap {
     float weight;
     std::uint32_t line;  ///< a bit of the beam and of the place that it was seen from
   };
+  void add(const std::vector<Sighting>& seen);
   void add(Layer& layer, const Sighting& seen);
   bool add_to(Cell& cell, const Sighting& seen) const;
   std::uint32_t fit(const Layer& layer, Cell& cell, map::Surface& surface) const;
@@ -124,15 +137,9 @@ class LocalMap {
   std::uint32_t place_ = 0;
   int least_lines_ = 2;
   std::uint64_t refused_ = 0;
+  std::vector<Sighting> block_;  ///< points on their way into the map
 };
 
 static_assert(registration::SurfaceMap<LocalMap>);
 
 }  // namespace holdfast::odometry
-
-namespace holdfast::registration {
-extern template std::size_t associate(const odometry::LocalMap& map, const SE3& T_anchor_body,
-                                      const Eigen::Vector3d& p_body_lidar, const BodyPoints& points,
-                                      const AssociationOptions& options, WorkerPool& pool,
-                                      Correspondences& out);
-}  // namespace holdfast::registration

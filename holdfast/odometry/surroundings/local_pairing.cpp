@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "holdfast/registration/degeneracy.hpp"
@@ -10,6 +11,7 @@ namespace holdfast::odometry {
 namespace {
 
 constexpr double kWeakShare = 0.02;  // of all information, below which a direction is weak
+constexpr std::size_t kChunk = 1024, kBlock = 64;
 constexpr int kManyPlanes = 10;
 constexpr double kRobustScale = 12.0;  // wide: the pose is still a prediction
 
@@ -35,18 +37,78 @@ void take_out(const Eigen::Vector3f& u, float sine, const SE3& T_anchor_body,
   }
 }
 
-/// A thin thing has two faces: what is seen of it from behind is not the plane that was seen from
-/// before. Returns the number of pairs that are left.
-std::size_t drop_seen_from_behind(const SE3& T_anchor_body, const Eigen::Vector3d& p_body_lidar,
-                                  registration::Correspondences& c) {
-  const Eigen::Vector3f lidar = (T_anchor_body * p_body_lidar).cast<float>();
-  std::size_t left = 0;
-  for (std::size_t i = 0; i < c.size(); ++i) {
-    const float before = c.nx[i] * lidar.x() + c.ny[i] * lidar.y() + c.nz[i] * lidar.z();
-    c.information[i] = before > c.offset[i] ? c.information[i] : 0.0F;
-    left += c.information[i] > 0 ? 1 : 0;
+/// One scan at one pose, as its points are paired.
+struct Query {
+  const LocalMap& map;
+  const registration::AssociationOptions& options;
+  Eigen::Matrix3f R;
+  Eigen::Vector3f t;
+  Eigen::Vector3f lidar;  ///< relative to the anchor
+
+  Eigen::Vector3f in_map(const Eigen::Vector3f& q) const { return R * q + t; }
+
+  /// 1 / variance of the distance of `p` to the plane; 0 where the two are no pair. A thin thing
+  /// has two faces: what is seen of it from behind is not the plane that was seen from before.
+  float information(const Eigen::Vector3f& p, const LocalMap::Hit& hit) const {
+    const map::Surface& s = *hit.surface;
+    if (!(std::abs(s.normal.dot(p - hit.corner - s.center)) < options.gate_m)) return 0.0F;
+    if (s.normal.dot(lidar - hit.corner - s.center) <= 0) return 0.0F;
+    const Eigen::Vector3f ray = p - lidar;
+    const float along = s.normal.dot(ray);
+    const float cosine_sq = along * along / ray.squaredNorm();
+    return 1.0F / (options.range_sigma_m * options.range_sigma_m * cosine_sq +
+                   s.sigma_m * s.sigma_m + options.surface_sigma_m * options.surface_sigma_m);
   }
-  return left;
+};
+
+void set_pair(const Query& query, const Eigen::Vector3f& p, const LocalMap::Hit& hit, std::size_t i,
+              registration::Correspondences& out) {
+  out.information[i] = hit.surface == nullptr ? 0.0F : query.information(p, hit);
+  if (out.information[i] <= 0) {
+    out.nx[i] = out.ny[i] = out.nz[i] = out.offset[i] = 0;
+    return;
+  }
+  const Eigen::Vector3f& n = hit.surface->normal;
+  out.nx[i] = n.x();
+  out.ny[i] = n.y();
+  out.nz[i] = n.z();
+  out.offset[i] = n.dot(hit.surface->center + hit.corner);
+}
+
+/// Pairs [begin, end), at most kBlock. What all of them need of the map, which lies anywhere in
+/// memory, is fetched at the same time.
+void pair_block(const Query& query, const registration::BodyPoints& points, std::size_t begin,
+                std::size_t end, registration::Correspondences& out) {
+  std::array<Eigen::Vector3f, kBlock> p;
+  std::array<LocalMap::Hit, kBlock> hits;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Eigen::Vector3f& q = points.points[i];
+    p[i - begin] = query.in_map(q);
+    query.map.prefetch(query.options.level, p[i - begin]);
+    out.px[i] = q.x();
+    out.py[i] = q.y();
+    out.pz[i] = q.z();
+    out.age_s[i] = points.age_s[i];
+  }
+  for (std::size_t i = begin; i < end; ++i) {
+    hits[i - begin] = query.map.find(query.options.level, p[i - begin]);
+    __builtin_prefetch(hits[i - begin].surface);
+  }
+  for (std::size_t i = begin; i < end; ++i) set_pair(query, p[i - begin], hits[i - begin], i, out);
+}
+
+/// registration::associate for a map with one plane a cell.
+std::size_t pair_all(const Query& query, const registration::BodyPoints& points, WorkerPool& pool,
+                     registration::Correspondences& out) {
+  out.resize(points.size());
+  for_each_chunk(pool, points.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; i += kBlock) {
+      pair_block(query, points, i, std::min(i + kBlock, end), out);
+    }
+  });
+  std::size_t pairs = 0;
+  for (const float information : out.information) pairs += information > 0 ? 1 : 0;
+  return pairs;
 }
 
 /// A pair that speaks about a weak direction, and the plane that it was paired with.
@@ -104,8 +166,10 @@ std::size_t LocalPairing::associate(const SE3& T_anchor_body, const Eigen::Vecto
                                     const registration::BodyPoints& points,
                                     const registration::AssociationOptions& options,
                                     WorkerPool& pool, registration::Correspondences& out) const {
-  registration::associate(map_, T_anchor_body, p_body_lidar, points, options, pool, out);
-  const std::size_t pairs = drop_seen_from_behind(T_anchor_body, p_body_lidar, out);
+  const Query query{map_, options, T_anchor_body.rotation.toRotationMatrix().cast<float>(),
+                    T_anchor_body.translation.cast<float>(),
+                    (T_anchor_body * p_body_lidar).cast<float>()};
+  const std::size_t pairs = pair_all(query, points, pool, out);
   const auto equations = registration::linearise(out, T_anchor_body, kRobustScale, pool, partials_);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
       registration::position_information(equations.H));
