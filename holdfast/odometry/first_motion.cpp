@@ -146,7 +146,8 @@ FirstMotion find_first_motion(FirstScan& first, const filter::SelectedScan& seco
     motion = FirstMotion::kRests;
     best_way.setZero();
   }
-  first.state.v_map = best_way / dt;
+  // Where floor and ceiling are hardly seen, the height that fits best is noise.
+  first.state.v_map = {best_way.x() / dt, best_way.y() / dt, 0};
   begin_map(first, gravity, map, work);
   return motion;
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "holdfast/odometry/odometry.hpp"
 #include "holdfast/odometry/surroundings/local_pairing.hpp"
@@ -12,7 +13,8 @@ using filter::UpdateResult;
 constexpr double kAccelerationAtStart = 0.3;  // m/s^2, that levelling takes for gravity
 constexpr double kLongestFirstWayM = 3.0;     // between the first two scans
 constexpr double kFirstSpeedSigma = 0.5;      // m/s, of the way between two scans
-constexpr double kFirstClimbSigma = 0.1;      // likewise upwards: robots hardly climb
+constexpr double kFirstClimbSigma = 0.1;      // likewise upwards
+constexpr double kFirstSlope = 0.1;           // of the ground
 constexpr int kLinesAtFirst = 3;              // of a plane, while the motion is not known well
 
 void set_sigma(FilterState& state, int offset, double sigma) {
@@ -98,7 +100,8 @@ void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
   begin_map(first_, gravity_.value(), map_, work_);
   state_ = first_.state;
   set_sigma(state_, FilterState::kV, kFirstSpeedSigma);
-  state_.P(FilterState::kV + 2, FilterState::kV + 2) = kFirstClimbSigma * kFirstClimbSigma;
+  const double climb = std::hypot(kFirstClimbSigma, kFirstSlope * state_.v_map.norm());
+  state_.P(FilterState::kV + 2, FilterState::kV + 2) = climb * climb;
   const Passage passage = pass(report);
   UpdateResult update = correct(clock);
   if (update.usable) {
