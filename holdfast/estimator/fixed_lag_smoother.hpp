@@ -34,6 +34,9 @@ class FixedLagSmoother {
   void push(const preprocess::ImuSegment& imu,
             const std::optional<BetweenFactor>& between = std::nullopt);
 
+  /// Links the two newest nodes by an odometry, if nothing did.
+  void link_newest(const BetweenFactor& between) { slot(size_ - 1).between = between; }
+
   /// Moves the newest node: a better start than the prediction, from a registration.
   void set_guess(const NodeState& state) { slot(size_ - 1).x = state; }
 

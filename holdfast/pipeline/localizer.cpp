@@ -7,6 +7,7 @@
 #include "baselines/map_filter.hpp"
 #include "holdfast/pipeline/methods/feature_selection.hpp"
 #include "holdfast/pipeline/methods/graph_localizer.hpp"
+#include "holdfast/pipeline/methods/odometry_run.hpp"
 #include "holdfast/pipeline/methods/query_matching.hpp"
 
 namespace holdfast::pipeline {
@@ -71,6 +72,7 @@ std::unique_ptr<ScanLocalizer> make_method(const Config& config, map::PriorMap m
   setup.smoother = config.estimator;
   setup.smoother.noise.imu = config.imu;
   setup.graph = config.graph;
+  setup.odometry = odometry_setup(config, start.threads);
   return std::make_unique<GraphLocalizer>(std::move(map), setup, T_map_body);
 }
 

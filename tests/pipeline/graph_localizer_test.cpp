@@ -63,5 +63,70 @@ TEST(TheGraph, KeepsThePoseWithoutImuFromHalfWayOn) {
   EXPECT_LT(errors.largest, 0.03);
 }
 
+/// The part of a map below x = `end_m`.
+io::PointCloud left_of(const io::PointCloud& map, double end_m) {
+  io::PointCloud part = map;
+  std::erase_if(part.points, [&](const Eigen::Vector3f& p) {
+    return p.cast<double>().x() + map.origin.x() > end_m;
+  });
+  return part;
+}
+
+/// A drive into a part of the building that the map does not show, and back.
+struct DriveBeyondTheMap {
+  explicit DriveBeyondTheMap(const std::string& odometry)
+      : simulation(valid(simulation::Simulation::create(drive_of("office", 22.0)))),
+        map(left_of(simulation->survey_map(), 4.5)) {
+    pipeline::Config config = config_of(*simulation);
+    config.method = "graph";
+    config.graph.odometry = odometry;
+    const SE3 start = simulation->initial_pose();
+    reports = reports_of(*simulation, map, config, start);
+  }
+
+  double error_m(const StepReport& r) const {
+    return (r.T_map_body.translation - simulation->truth_at(r.pose_time).translation).norm();
+  }
+
+  std::unique_ptr<simulation::Simulation> simulation;
+  map::testing::BuiltMap map;
+  std::vector<StepReport> reports;
+};
+
+TEST(TheGraph, IsCarriedOnByOdometryOutsideOfTheMapAndFindsBackInside) {
+  const DriveBeyondTheMap drive("on");
+  double way = 0;
+  int unmapped = 0;
+  const StepReport* last = nullptr;
+  for (const StepReport& r : drive.reports) {
+    if (!claims_pose(r.state)) continue;
+    if (r.state == State::kUnmapped) {
+      if (last != nullptr) way += (r.T_map_body.translation - last->T_map_body.translation).norm();
+      ++unmapped;
+      EXPECT_LT(drive.error_m(r), 0.01 + 0.005 * way);
+      EXPECT_LT(drive.error_m(r), 4 * r.sigma_trans_m + 0.005);
+    } else {
+      EXPECT_LT(drive.error_m(r), 0.02);
+    }
+    last = &r;
+  }
+  EXPECT_GE(unmapped, 40);
+  EXPECT_EQ(drive.reports.back().state, State::kTracking);
+  EXPECT_GE(way, 2.0);
+}
+
+TEST(TheGraph, WithoutOdometryIsWrongByMoreThanFiveTimesAsMuchOutsideOfTheMap) {
+  const DriveBeyondTheMap with("on");
+  const DriveBeyondTheMap without("off");
+  double most_with = 0;
+  double most_without = 0;
+  for (std::size_t i = 0; i < with.reports.size(); ++i) {
+    if (with.reports[i].state != State::kUnmapped) continue;
+    most_with = std::max(most_with, with.error_m(with.reports[i]));
+    most_without = std::max(most_without, without.error_m(without.reports[i]));
+  }
+  EXPECT_GT(most_without, 5 * most_with);
+}
+
 }  // namespace
 }  // namespace holdfast::testing

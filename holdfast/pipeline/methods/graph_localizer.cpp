@@ -21,6 +21,8 @@ constexpr float kCoarseSurfaceSigmaM = 0.05F;
 constexpr double kLeverM = 10.0;        // how far the map's planes are away
 constexpr int kJumpAges = 4;            // intervals in which a bias may have jumped unnoticed
 constexpr double kSkewToldM = 0.005;    // skew that is worth being estimated
+constexpr double kMostlyMapped = 0.5;   // share of returns; below, an odometry sees more
+constexpr double kHardlyMapped = 0.2;   // below, this is outside of the map
 constexpr double kMostScansAlike = 30;  // of the same part of the map, however slow the robot
 
 double largest_sigma(const Matrix18d& P, int offset) {
@@ -49,10 +51,12 @@ GraphLocalizer::GraphLocalizer(map::PriorMap map, const Setup& setup, const SE3&
       pool_(setup.start.threads),
       smoother_(setup.smoother) {
   scan_.T_body_lidar = setup.start.T_body_lidar;
+  if (setup.graph.odometry == "on") witness_ = std::make_unique<OdometryWitness>(setup.odometry);
 }
 
 void GraphLocalizer::add_imu(const ImuSample& sample) {
   imu_.add(sample);
+  if (witness_) witness_->add_imu(sample);
   if (start_) start_->add_imu(sample);
 }
 
@@ -63,15 +67,19 @@ StepReport GraphLocalizer::add_scan(const Scan& scan) {
   report.pose_time = scan.end_time;
   {
     StageClock clock(report.times);
+    if (witness_) witness_->add_scan(scan);
+    clock.book(Stage::kPredict);
     step(scan, clock, report);
     clock.book(Stage::kHealth);
   }
+  if (witness_) report.odom_epoch = witness_->epoch();
   ++scan_number_;
   return report;
 }
 
 StepReport GraphLocalizer::start(const Scan& scan) {
   StepReport report = start_->add_scan(scan);
+  if (witness_) witness_->add_scan(scan);
   ++scan_number_;
   if (report.state == State::kTracking || report.state == State::kDegraded) take_over();
   return report;
@@ -112,10 +120,12 @@ void GraphLocalizer::step(const Scan& scan, StageClock& clock, StepReport& repor
   clock.book(Stage::kPredict);
   Match found = match(predicted, clock);
   allow_for_bias_jump(found, clock);
+  carry_on_by_odometry(found);
   clock.book(Stage::kSolve);
   travel_per_scan_m_ =
       (smoother_.newest().T_map_body.translation - before.T_map_body.translation).norm();
   describe(found, report);
+  compare_with_odometry(found);
   judge(found, report);
   imu_.drop_before(scan.end_time - kImuMemory);
 }
@@ -144,7 +154,9 @@ bool GraphLocalizer::predict(TimeNs to, StepReport& report) {
   if (!imu_.segment(smoother_.newest().t, to, segment_)) return false;
   report.imu_held_ns = segment_.held_ns;
   allow_for_silence();
-  smoother_.push(segment_);
+  motion_ = witness_ ? witness_->take_motion() : std::nullopt;
+  const bool sees_more = last_mapped_share_ < kMostlyMapped;
+  smoother_.push(segment_, sees_more ? motion_ : std::nullopt);
   return true;
 }
 
@@ -277,6 +289,41 @@ void GraphLocalizer::allow_for_bias_jump(Match& match, StageClock& clock) {
   match.usable = match.optimised.solved && match.equations.weight >= kLeastWeight;
 }
 
+/// Where the map tells nothing, or has little of what is there, the odometry carries the pose on.
+/// Elsewhere it is left out: it saw the same points as the map match, so that both together would
+/// claim more than they know.
+void GraphLocalizer::carry_on_by_odometry(Match& match) {
+  if (!witness_ || scan_.selected.empty()) return;
+  const double pairs = match.equations.pairs / static_cast<double>(scan_.selected.size());
+  if (pairs < kMostlyMapped) match.mapped_share = mapped_share(smoother_.newest().T_map_body);
+  const bool linked = last_mapped_share_ < kMostlyMapped;
+  last_mapped_share_ = match.mapped_share;
+  if (match.usable || linked || !motion_) return;
+  smoother_.link_newest(*motion_);
+  smoother_.optimise([](const NodeState&) { return std::nullopt; });
+}
+
+/// Share of the returns around which the map has anything at all.
+double GraphLocalizer::mapped_share(const SE3& T_map_body) const {
+  constexpr std::size_t kEvery = 8;
+  const Eigen::Matrix3f R = T_map_body.rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f p = (T_map_body.translation - map_->anchor()).cast<float>();
+  int mapped = 0;
+  int asked = 0;
+  for (std::size_t i = 0; i < work_.points.size(); i += kEvery, ++asked) {
+    const auto hit = map_->find(map::kLevels - 1, R * work_.points.points[i] + p);
+    mapped += hit.surface != nullptr ? 1 : 0;
+  }
+  return asked > 0 ? static_cast<double>(mapped) / asked : 1.0;
+}
+
+void GraphLocalizer::compare_with_odometry(const Match& match) {
+  if (!witness_ || !match.usable) return;
+  witness_->compare(
+      {smoother_.newest().T_map_body, smoother_.covariance_of_newest().topLeftCorner<6, 6>()},
+      match.equations.weight / static_cast<double>(scan_.selected.size()));
+}
+
 void GraphLocalizer::describe(const Match& match, StepReport& report) const {
   const auto& e = match.equations;
   const Matrix18d P = smoother_.covariance_of_newest();
@@ -293,9 +340,15 @@ void GraphLocalizer::describe(const Match& match, StepReport& report) const {
 }
 
 void GraphLocalizer::judge(const Match& match, StepReport& report) const {
-  if (report.sigma_trans_m > setup_.start.filter.lost_sigma_m) {
+  if (witness_ && witness_->contradicts_map()) {
+    report.state = State::kLost;
+    report.reason = "the map and the odometry disagree beyond doubt";
+  } else if (report.sigma_trans_m > setup_.start.filter.lost_sigma_m) {
     report.state = State::kLost;
     report.reason = "too long without a scan that fits the map";
+  } else if (!match.usable && match.mapped_share < kHardlyMapped) {
+    report.state = State::kUnmapped;
+    report.reason = "the map has nothing of what is around; the odometry carries the pose on";
   } else if (!match.usable) {
     report.state = State::kDeadReckoning;
     report.reason = scan_.selected.empty() ? "no returns" : "the scan does not fit the map";

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "baselines/map_filter.hpp"
 #include "holdfast/estimator/fixed_lag_smoother.hpp"
 #include "holdfast/filter/scan_match.hpp"
+#include "holdfast/pipeline/methods/odometry_witness.hpp"
 #include "holdfast/pipeline/methods/scan_localizer.hpp"
 
 namespace holdfast::pipeline {
@@ -16,6 +19,7 @@ struct GraphConfig {
   double map_error_share = 0.05;
   double map_correlation_m = 0.5;
   double surprise = 40.0;
+  std::string odometry = "on";
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -30,6 +34,11 @@ struct GraphConfig {
           FieldDoc{"squared Mahalanobis distance of scan and prediction from which a jump of the "
                    "IMU's biases is considered",
                    1.0, 1e6});
+    visit("odometry", self.odometry,
+          FieldDoc{"run the odometry beside the graph: it carries the pose on outside of the map, "
+                   "and tells when the map cannot be right",
+                   -std::numeric_limits<double>::infinity(),
+                   std::numeric_limits<double>::infinity(), "on|off"});
   }
 };
 
@@ -41,6 +50,7 @@ class GraphLocalizer : public ScanLocalizer {
     baselines::MapFilter::Setup start;  ///< matching, selection, noise; and the start itself
     estimator::SmootherConfig smoother;
     GraphConfig graph;
+    odometry::Odometry::Setup odometry;
   };
 
   /// `T_map_body` is the pose at the end of the first scan, to within Setup::start.
@@ -57,6 +67,7 @@ class GraphLocalizer : public ScanLocalizer {
     registration::NormalEquations equations;  ///< of the scan alone
     estimator::OptimiseReport optimised;
     bool usable = false;
+    double mapped_share = 1;  ///< of the returns, where the map has anything
   };
 
   StepReport start(const Scan& scan);
@@ -73,8 +84,11 @@ class GraphLocalizer : public ScanLocalizer {
   bool lead_by_coarse_planes(const estimator::NodeState& predicted, double sigma_m,
                              StageClock& clock);
   void allow_for_bias_jump(Match& match, StageClock& clock);
+  void carry_on_by_odometry(Match& match);
+  double mapped_share(const SE3& T_map_body) const;
   filter::UpdateOptions options() const;
   void describe(const Match& match, StepReport& report) const;
+  void compare_with_odometry(const Match& match);
   void judge(const Match& match, StepReport& report) const;
 
   Setup setup_;
@@ -86,6 +100,9 @@ class GraphLocalizer : public ScanLocalizer {
   filter::UpdateWorkspace work_;
   filter::SelectedScan scan_;
   estimator::FixedLagSmoother smoother_;
+  std::unique_ptr<OdometryWitness> witness_;        ///< none: switched off
+  std::optional<estimator::BetweenFactor> motion_;  ///< since the node before, by the odometry
+  double last_mapped_share_ = 1;
   std::uint64_t scan_number_ = 0;
   double travel_per_scan_m_ = 0;
   bool silent_ = false;  ///< the IMU, for most of the newest interval

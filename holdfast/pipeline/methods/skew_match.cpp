@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "holdfast/registration/degeneracy.hpp"
+
 namespace holdfast::pipeline {
 namespace {
 
@@ -93,6 +95,8 @@ estimator::MapFactor SkewMatch::linearise(const NodeState& x) {
   const double scale =
       options_.robust_scale * kAnneal[std::min<std::size_t>(calls_++, kAnneal.size() - 1)];
   raw_ = registration::linearise(work_.pairs, T_anchor_body, scale, pool_, work_.partials);
+  raw_.feigned = registration::feigned_information(raw_, work_.pairs, T_anchor_body, scale,
+                                                   options_.few_pairs);
   Matrix15d H = Matrix15d::Zero();
   Vector15d g = Vector15d::Zero();
   linearise_with_skew(work_.pairs, T_anchor_body, scale, H, g);
