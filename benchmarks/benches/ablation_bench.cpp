@@ -29,7 +29,12 @@ struct Variant {
 
 const std::vector<Variant>& variants() {
   static const std::vector<Variant> kVariants = {
-      {"full", "full: graph of IMU and map", {"method=graph"}, false, 0.062},
+      {"full", "full: graph of IMU, map and odometry", {"method=graph"}, false, 0.062},
+      {"without_odometry",
+       "without odometry",
+       {"method=graph", "graph.odometry=off"},
+       false,
+       0.089},
       {"without_prior_map", "without prior map: odometry alone", {}, true, 0.158},
       {"map_filter", "map_filter", {"method=map_filter"}},
       {"log_features", "on features: log", {"method=map_filter", "features=log"}},
