@@ -62,8 +62,8 @@ void judge(const std::vector<StepReport>& steps, const simulation::Simulation& d
     const SE3 truth = drive.truth_at(step.pose_time);
     const Eigen::Matrix3d R_body_map = step.T_map_body.rotation.conjugate().toRotationMatrix();
     PoseConsistency::Error error;
-    error << R_body_map * (step.T_map_body.translation - truth.translation),
-        so3::log(truth.rotation.conjugate() * step.T_map_body.rotation);
+    error.head<3>() = R_body_map * (step.T_map_body.translation - truth.translation);
+    error.tail<3>() = so3::log(truth.rotation.conjugate() * step.T_map_body.rotation);
     PoseConsistency::Covariance to_body = PoseConsistency::Covariance::Identity();
     to_body.topLeftCorner<3, 3>() = R_body_map;
     run.errors.add(error, to_body * step.pose_covariance * to_body.transpose());
