@@ -153,11 +153,13 @@ UpdateResult MapFilter::correct_from(int coarsest, const FilterState& predicted,
   // would displace the pose by half of the skew that it makes up.
   const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
   const bool fast_or_slow = largest_sigma(predicted.P, FilterState::kV) * span > kSkewToldM;
+  const bool imu_in_doubt = biases_before_hold_ || predicted.t < last_surprise_ + kSecond;
   UpdateResult update;
   for (int level = coarsest; level >= 0; --level) {
     UpdateOptions how = options();
     how.association.level = level;
     how.velocity_from_skew = fast_or_slow;
+    how.motion_from_skew = imu_in_doubt;
     if (level > 0) {
       const auto reach = static_cast<float>(3.0 * largest_sigma(predicted.P, FilterState::kP));
       how.association.gate_m = std::max(how.association.gate_m, reach);

@@ -15,6 +15,7 @@ using registration::NormalEquations;
 constexpr double kRepairM = 0.02;
 constexpr double kRepairRad = 0.002;
 constexpr double kRedeskewM = 0.002;
+constexpr double kRedeskewRad = 0.0002;
 // The robust loss starts wide and narrows: far from the optimum its narrow form hardly feels the
 // pairs that are off, and takes many small steps.
 constexpr std::array<double, ScanMatch::kCalls> kAnneal = {4.0, 2.0, 1.0};
@@ -35,19 +36,27 @@ void ScanMatch::book(Stage stage) {
   if (clock_ != nullptr) clock_->book(stage);
 }
 
-void ScanMatch::deskew(const MatchState& x) {
-  const Scan& s = *scan_.scan;
+void deskew_scan(const SelectedScan& scan, const MatchState& x, UpdateWorkspace& work) {
+  const Scan& s = *scan.scan;
   const Eigen::Quaterniond R_body_map = x.T_map_body.rotation.conjugate();
-  work_.motion.set(scan_.imu,
-                   {R_body_map * x.v_map, R_body_map * x.gravity_map, x.gyro_bias, x.accel_bias},
-                   scan_.T_body_lidar, s.stamp, s.end_time);
-  work_.points.resize(scan_.selected.size());
+  work.motion.set(scan.imu,
+                  {R_body_map * x.v_map, R_body_map * x.gravity_map, x.gyro_bias, x.accel_bias},
+                  scan.T_body_lidar, s.stamp, s.end_time);
+  work.points.resize(scan.selected.size());
   const auto span_s = static_cast<float>(to_seconds(s.end_time - s.stamp));
-  for (std::size_t i = 0; i < scan_.selected.size(); ++i) {
-    const ScanPoint& p = s.points[scan_.selected[i]];
-    work_.points.points[i] = work_.motion.deskew(p);
-    work_.points.age_s[i] = static_cast<float>(p.time_offset_ns) * 1e-9F - span_s;
+  for (std::size_t i = 0; i < scan.selected.size(); ++i) {
+    const ScanPoint& p = s.points[scan.selected[i]];
+    work.points.points[i] = work.motion.deskew(p);
+    work.points.age_s[i] = static_cast<float>(p.time_offset_ns) * 1e-9F - span_s;
   }
+}
+
+double ScanMatch::anneal(int call) {
+  return kAnneal[std::min(static_cast<std::size_t>(call), kAnneal.size() - 1)];
+}
+
+void ScanMatch::deskew(const MatchState& x) {
+  deskew_scan(scan_, x, work_);
   deskewed_ = x;
   book(Stage::kDeskew);
 }
@@ -59,10 +68,11 @@ void ScanMatch::pair(const MatchState& x) {
   book(Stage::kAssociate);
 }
 
-/// Has the velocity moved the points by more than matters?
+/// Have velocity or turning rate moved the points by more than matters?
 bool ScanMatch::is_stale(const MatchState& x) const {
   const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
-  return (x.v_map - deskewed_.v_map).norm() * span > kRedeskewM;
+  return (x.v_map - deskewed_.v_map).norm() * span > kRedeskewM ||
+         (x.gyro_bias - deskewed_.gyro_bias).norm() * span > kRedeskewRad;
 }
 
 const NormalEquations& ScanMatch::linearise(const MatchState& x) {
@@ -71,8 +81,7 @@ const NormalEquations& ScanMatch::linearise(const MatchState& x) {
   const bool far = (x.T_map_body.translation - paired_.translation).norm() > kRepairM ||
                    so3::angle_between(x.T_map_body.rotation, paired_.rotation) > kRepairRad;
   if (stale || far) pair(x);
-  const double anneal = kAnneal[std::min<std::size_t>(calls_++, kAnneal.size() - 1)];
-  const double scale = anneal * options_.robust_scale;
+  const double scale = anneal(calls_++) * options_.robust_scale;
   const SE3 T_anchor_body = anchored(x.T_map_body, map_);
   raw_ = registration::linearise(work_.pairs, T_anchor_body, scale, pool_, work_.partials);
   raw_.feigned = registration::feigned_information(raw_, work_.pairs, T_anchor_body, scale,

@@ -29,6 +29,9 @@ struct UpdateOptions {
   /// Let the velocity follow from the skew of the scan too: needed where nothing else tells it (a
   /// start on the move); otherwise the prediction knows it far better.
   bool velocity_from_skew = false;
+  /// Let the velocity and both biases follow from it: while the IMU is silent or contradicts the
+  /// scans (skew_match.hpp).
+  bool motion_from_skew = false;
 };
 
 /// The map's own error in a scan that lasts `span_s` and has these equations: over its time it may
@@ -82,6 +85,10 @@ struct MatchState {
   Eigen::Vector3d gravity_map = Eigen::Vector3d(0, 0, -9.81);
 };
 
+/// Puts the selected points into the body frame of the scan's end, given that the body moved as `x`
+/// says: into `work.points`.
+void deskew_scan(const SelectedScan& scan, const MatchState& x, UpdateWorkspace& work);
+
 /// Matches one scan to a map again and again while an optimisation moves its pose: deskews
 /// and pairs the points anew only where the state has moved so far that it matters.
 class ScanMatch {
@@ -93,6 +100,7 @@ class ScanMatch {
   /// Normal equations at `x`, softened by the map's own error. The robust loss starts wide and
   /// narrows from call to call: kCalls calls until it is as narrow as the options say.
   static constexpr int kCalls = 3;
+  static double anneal(int call);
   const registration::NormalEquations& linearise(const MatchState& x);
 
   /// The equations of the last call without the map's own error.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "holdfast/pipeline/methods/skew_match.hpp"
+#include "holdfast/filter/skew_match.hpp"
 #include "holdfast/registration/degeneracy.hpp"
 
 namespace holdfast::pipeline {
@@ -225,7 +225,7 @@ GraphLocalizer::Match GraphLocalizer::match_finely(const filter::UpdateOptions& 
                                                    StageClock& clock) {
   const filter::PairingWith<map::PriorMap> pairing(*map_);
   filter::ScanMatch scan(pairing, scan_, options, pool_, work_, &clock);
-  SkewMatch skewed(*map_, scan_, options, pool_, work_, &clock);
+  filter::SkewMatch skewed(pairing, scan_, options, pool_, work_, &clock);
   estimator::OptimiseOptions how;
   how.min_measurements = filter::ScanMatch::kCalls;
   how.max_measurements = options.max_iterations;
@@ -233,8 +233,13 @@ GraphLocalizer::Match GraphLocalizer::match_finely(const filter::UpdateOptions& 
   found.optimised = smoother_.optimise(
       [&](const NodeState& x) -> std::optional<estimator::MapFactor> {
         const bool open = motion_is_open();
-        const estimator::MapFactor factor =
-            open ? skewed.linearise(x) : estimator::MapFactor(scan.linearise(match_state_of(x)), x);
+        estimator::MapFactor factor;
+        if (open) {
+          const filter::SkewEquations e = skewed.linearise(match_state_of(x));
+          factor = estimator::MapFactor(e.H, e.g, skewed.raw().cost, x);
+        } else {
+          factor = estimator::MapFactor(scan.linearise(match_state_of(x)), x);
+        }
         found.equations = open ? skewed.raw() : scan.raw();
         if (found.equations.weight < kLeastWeight) return std::nullopt;
         return factor;

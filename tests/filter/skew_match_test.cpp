@@ -1,4 +1,4 @@
-#include "holdfast/pipeline/methods/skew_match.hpp"
+#include "holdfast/filter/skew_match.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,13 +7,12 @@
 #include "holdfast/core/random.hpp"
 #include "holdfast/preprocess/deskew.hpp"
 
-namespace holdfast::pipeline {
+namespace holdfast::filter {
 namespace {
-
-using estimator::NodeState;
 
 constexpr TimeNs kStamp = 5 * kSecond;
 constexpr TimeNs kEnd = kStamp + kSecond / 10;
+const Eigen::Vector3d kGravity(0, 0, -9.81);
 
 Eigen::Vector3d random_vector(RandomStream& random, double scale) {
   return scale * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
@@ -26,9 +25,8 @@ struct SlowScan {
     RandomStream random(1, "slow scan");
     x.T_map_body = {so3::exp(random_vector(random, 1.0)), random_vector(random, 3.0)};
     x.v_map = random_vector(random, 1e-3);
-    x.gravity_map = {0, 0, -9.81};
     x.t = kEnd;
-    const Eigen::Vector3d force = -(x.T_map_body.rotation.conjugate() * x.gravity_map);
+    const Eigen::Vector3d force = -(x.T_map_body.rotation.conjugate() * kGravity);
     imu.samples = {{kStamp, random_vector(random, 1e-3), force},
                    {kEnd, random_vector(random, 1e-3), force}};
     for (int i = 0; i < 400; ++i) {
@@ -45,11 +43,10 @@ struct SlowScan {
   }
 
   /// The pairs with the points moved as a body with the state `at` moved.
-  registration::Correspondences pairs_at(const NodeState& at) const {
+  registration::Correspondences pairs_at(const FilterState& at) const {
     const Eigen::Quaterniond R_body_map = at.T_map_body.rotation.conjugate();
     preprocess::ScanMotion motion;
-    motion.set(imu,
-               {R_body_map * at.v_map, R_body_map * at.gravity_map, at.gyro_bias, at.accel_bias},
+    motion.set(imu, {R_body_map * at.v_map, R_body_map * kGravity, at.gyro_bias, at.accel_bias},
                SE3{}, kStamp, kEnd);
     registration::Correspondences out = pairs;
     out.resize(scan.points.size());
@@ -65,7 +62,7 @@ struct SlowScan {
   }
 
   /// Residuals at `at`, in double.
-  Eigen::VectorXd residuals(const NodeState& at) const {
+  Eigen::VectorXd residuals(const FilterState& at) const {
     const auto moved = pairs_at(at);
     Eigen::VectorXd r(static_cast<Eigen::Index>(moved.size()));
     for (std::size_t i = 0; i < moved.size(); ++i) {
@@ -75,7 +72,7 @@ struct SlowScan {
     return r;
   }
 
-  NodeState x;
+  FilterState x;
   preprocess::ImuSegment imu;
   Scan scan;
   std::vector<Eigen::Vector3d> normals;
@@ -86,17 +83,15 @@ struct SlowScan {
 TEST(SkewEquations, AreThoseOfTheDerivativesOfDeskewedPoints) {
   const SlowScan s;
   constexpr double kWide = 1e6;  // of the robust loss: no point counts less than another
-  filter::Matrix15d H = filter::Matrix15d::Zero();
-  filter::Vector15d g = filter::Vector15d::Zero();
-  linearise_with_skew(s.pairs, s.x.T_map_body, kWide, H, g);
+  const auto [H, g] = linearise_with_skew(s.pairs, s.x.T_map_body, kWide);
   // A step that moves a point by about 1 cm: the points are floats.
   constexpr double kSteps[] = {0.01, 0.001, 0.1, 2.0, 0.02};
   Eigen::Matrix<double, Eigen::Dynamic, 15> J(400, 15);
   for (int k = 0; k < 15; ++k) {
-    estimator::Vector18d d = estimator::Vector18d::Zero();
+    Vector15d d = Vector15d::Zero();
     d[k] = kSteps[k / 3];
-    NodeState up = s.x;
-    NodeState down = s.x;
+    FilterState up = s.x;
+    FilterState down = s.x;
     up.add(d);
     down.add(-d);
     J.col(k) = (s.residuals(up) - s.residuals(down)) / (2 * kSteps[k / 3]);
@@ -115,10 +110,8 @@ TEST(SkewEquations, AreThoseOfTheDerivativesOfDeskewedPoints) {
 
 TEST(SkewEquations, AgreeWithThoseOfPoseAndVelocityAndTheirRobustWeights) {
   const SlowScan s;
-  filter::Matrix15d H = filter::Matrix15d::Zero();
-  filter::Vector15d g = filter::Vector15d::Zero();
   constexpr double kNarrow = 0.02;
-  linearise_with_skew(s.pairs, s.x.T_map_body, kNarrow, H, g);
+  const auto [H, g] = linearise_with_skew(s.pairs, s.x.T_map_body, kNarrow);
   WorkerPool pool(1);
   std::vector<registration::NormalEquations> partials;
   const auto e = registration::linearise(s.pairs, s.x.T_map_body, kNarrow, pool, partials);
@@ -127,4 +120,4 @@ TEST(SkewEquations, AgreeWithThoseOfPoseAndVelocityAndTheirRobustWeights) {
 }
 
 }  // namespace
-}  // namespace holdfast::pipeline
+}  // namespace holdfast::filter
