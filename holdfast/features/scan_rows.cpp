@@ -113,7 +113,7 @@ void RowSorter::count_elevations(const Points& points) {
   bin_of_.resize(points.size());
   in_bin_.assign(kElevationBins, 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const int bin = static_cast<int>((elevation_sine(points[i]) + 1.0F) * (kElevationBins / 2));
+    const int bin = static_cast<int>((elevation_sine(points[i]) + 1.0F) * (0.5F * kElevationBins));
     bin_of_[i] = static_cast<std::uint16_t>(std::clamp(bin, 0, kElevationBins - 1));
     ++in_bin_[bin_of_[i]];
   }
