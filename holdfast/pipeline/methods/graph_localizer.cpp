@@ -81,15 +81,23 @@ StepReport GraphLocalizer::start(const Scan& scan) {
   StepReport report = start_->add_scan(scan);
   if (witness_) witness_->add_scan(scan);
   ++scan_number_;
-  if (report.state == State::kTracking || report.state == State::kDegraded) take_over();
+  const bool found = report.state == State::kTracking || report.state == State::kDegraded;
+  // At rest there is nothing to smooth, and the filter knows that the robot does not move.
+  if (found && !start_->rests()) take_over();
   return report;
 }
 
-/// The first node is what the filter knows.
+/// The first node is what the filter knows. It took gravity for known, so that what it holds for
+/// the bias of the accelerometer is the sum of both as the body feels it.
 void GraphLocalizer::take_over() {
   const filter::FilterState& found = start_->state();
-  Matrix18d P = Matrix18d::Identity() * std::pow(setup_.graph.gravity_sigma_m_s2, 2);
+  const double variance = std::pow(setup_.graph.gravity_sigma_m_s2, 2);
+  const Eigen::Matrix3d R = found.T_map_body.rotation.toRotationMatrix();
+  Matrix18d P = variance * Matrix18d::Identity();
   P.topLeftCorner<15, 15>() = found.P;
+  P.diagonal().segment<3>(NodeState::kBa).array() += variance;
+  P.block<3, 3>(NodeState::kBa, NodeState::kG) = variance * R.transpose();
+  P.block<3, 3>(NodeState::kG, NodeState::kBa) = variance * R;
   smoother_.reset(node_of(found, start_->map().info().gravity_map), P);
   map_ = std::make_unique<map::PriorMap>(std::move(*start_).take_map());
   start_.reset();
@@ -167,28 +175,29 @@ void GraphLocalizer::allow_for_silence() {
   const bool between = segment_.longest_gap_ns > filter::kLongestHold && segment_.held_ns == 0;
   if (between) segment_.held_ns = segment_.longest_gap_ns;
   silent_ = segment_.held_ns > filter::kLongestHold;
-  if (silent_ && !before_hold_) before_hold_ = filter_state_of_newest().biases();
+  if (silent_ && !before_hold_) before_hold_ = ImuState{smoother_.newest(), smoother_.covariance_of_newest()};
   if (!before_hold_ || (silent_ && !between)) return;
   restore_biases();
   if (!silent_) before_hold_.reset();
 }
 
-filter::FilterState GraphLocalizer::filter_state_of_newest() const {
-  return filter_state_of(smoother_.newest(), smoother_.covariance_of_newest());
-}
-
+/// Biases and gravity, which are known together, independently of the rest of the newest node.
 void GraphLocalizer::restore_biases() {
-  filter::FilterState state = filter_state_of_newest();
-  state.set_biases(*before_hold_);
+  constexpr int kMoving = NodeState::kBa;
+  constexpr int kSteady = NodeState::kSize - kMoving;
+  NodeState x = smoother_.newest();
+  x.accel_bias = before_hold_->x.accel_bias;
+  x.gyro_bias = before_hold_->x.gyro_bias;
+  Matrix18d P = smoother_.covariance_of_newest();
+  P.topRightCorner<kMoving, kSteady>().setZero();
+  P.bottomLeftCorner<kSteady, kMoving>().setZero();
+  P.bottomRightCorner<kSteady, kSteady>() = before_hold_->P.bottomRightCorner<kSteady, kSteady>();
   if (silent_) {
     const auto& motion = setup_.smoother.noise.unmeasured;
-    state.P.diagonal().segment<3>(NodeState::kBa).array() += std::pow(motion.accel_sigma_m_s2, 2);
-    state.P.diagonal().segment<3>(NodeState::kBg).array() += std::pow(motion.gyro_sigma_rad_s, 2);
+    P.diagonal().segment<3>(NodeState::kBa).array() += std::pow(motion.accel_sigma_m_s2, 2);
+    P.diagonal().segment<3>(NodeState::kBg).array() += std::pow(motion.gyro_sigma_rad_s, 2);
   }
-  Matrix18d P = Matrix18d::Zero();
-  P.topLeftCorner<15, 15>() = state.P;
-  P.bottomRightCorner<3, 3>() = smoother_.covariance_of_newest().bottomRightCorner<3, 3>();
-  smoother_.reset(node_of(state, smoother_.newest().gravity_map), P);
+  smoother_.reset(x, P);
 }
 
 GraphLocalizer::Match GraphLocalizer::match(const NodeState& predicted, StageClock& clock) {

@@ -70,12 +70,17 @@ class GraphLocalizer : public ScanLocalizer {
     double mapped_share = 1;  ///< of the returns, where the map has anything
   };
 
+  /// What is kept of a node for when its IMU is back.
+  struct ImuState {
+    estimator::NodeState x;
+    estimator::Matrix18d P;
+  };
+
   StepReport start(const Scan& scan);
   void take_over();
   void step(const Scan& scan, StageClock& clock, StepReport& report);
   bool prepare(const Scan& scan, StepReport& report);
   bool predict(TimeNs to, StepReport& report);
-  filter::FilterState filter_state_of_newest() const;
   void allow_for_silence();
   void restore_biases();
   Match match(const estimator::NodeState& predicted, StageClock& clock);
@@ -106,7 +111,7 @@ class GraphLocalizer : public ScanLocalizer {
   std::uint64_t scan_number_ = 0;
   double travel_per_scan_m_ = 0;
   bool silent_ = false;  ///< the IMU, for most of the newest interval
-  std::optional<filter::FilterState::Biases> before_hold_;  ///< while it is
+  std::optional<ImuState> before_hold_;  ///< while it is
 };
 
 }  // namespace holdfast::pipeline
