@@ -88,7 +88,7 @@ void add_localize_command(CLI::App& app) {
   command->add_option("--initial-pose", args->initial_pose,
                       "\"x y z qx qy qz qw\": T_map_body at the end of the first scan, good to 1 m "
                       "and 10 degrees");
-  command->add_option("--method", args->method, "localizer: map_filter or graph");
+  command->add_option("--method", args->method, "localizer: graph or map_filter");
   command->add_option("--truth", args->truth, "true trajectory (TUM): the report shows errors");
   command->add_option("--events", args->events,
                       "events.jsonl of a simulation: shown in the report");

@@ -13,6 +13,7 @@ Result<std::unique_ptr<simulation::Simulation>> make_drive(const DriveSpec& spec
   options.seed = spec.seed;
   options.duration_s = spec.duration_s;
   options.threads = spec.threads;
+  options.lidar = spec.lidar;
   return simulation::Simulation::create(options);
 }
 

@@ -17,6 +17,7 @@ struct DriveSpec {
   double duration_s = 20;
   int threads = 1;  ///< for casting rays and fitting surfaces; the drive does not depend on it
   std::vector<std::string> settings = {};  ///< module.key=value, over the robot's configuration
+  simulation::LidarModel lidar = simulation::LidarModel::rs16();
 };
 
 /// A simulated drive that has not begun, and all that `holdfast localize` would be given: the map

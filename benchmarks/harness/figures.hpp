@@ -9,13 +9,13 @@ namespace holdfast::benchmarks {
 
 /// Times in ms of many steps.
 struct Distribution {
-  double p50 = 0, p95 = 0, p99 = 0, max = 0;
+  double p50 = 0, p95 = 0, p99 = 0, p999 = 0, max = 0;
 };
 
 /// All NaN for no values.
 Distribution distribution_of(const std::vector<double>& values);
 
-/// {"p50": ..., "p95": ..., "p99": ..., "max": ...}.
+/// {"p50": ..., "p95": ..., "p99": ..., "p99.9": ..., "max": ...}.
 nlohmann::ordered_json json_of(const Distribution& distribution);
 
 /// Of one figure over many drives. What is not known (NaN) is no figure; what failed (infinite) is

@@ -31,15 +31,31 @@ constexpr bool claims_pose(State state) {
 }
 
 /// The work of a step, in order. Names of the ms_ columns of steps.csv.
-enum class Stage : std::uint8_t { kStart, kSelect, kPredict, kDeskew, kAssociate, kSolve, kHealth };
-constexpr std::array<std::string_view, 7> kStageNames = {"start",     "select", "predict", "deskew",
-                                                         "associate", "solve",  "health"};
+enum class Stage : std::uint8_t {
+  kStart,
+  kOdometry,  ///< all of an odometry that runs beside a localizer
+  kSelect,
+  kPredict,
+  kDeskew,
+  kAssociate,
+  kSolve,
+  kHealth
+};
+constexpr std::array<std::string_view, 8> kStageNames = {
+    "start", "odometry", "select", "predict", "deskew", "associate", "solve", "health"};
 
 /// Thread CPU time of one step, ms.
 struct StageTimes {
   std::array<double, kStageNames.size()> ms{};
   double total_ms = 0;
   double wall_ms = 0;
+
+  StageTimes& operator+=(const StageTimes& other) {
+    for (std::size_t i = 0; i < ms.size(); ++i) ms[i] += other.ms[i];
+    total_ms += other.total_ms;
+    wall_ms += other.wall_ms;
+    return *this;
+  }
 };
 
 /// What came of one scan.

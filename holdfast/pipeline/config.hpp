@@ -47,7 +47,7 @@ struct StartConfig {
 struct Config {
   SE3 T_body_lidar;
   bool has_T_body_lidar = false;
-  std::string method = "map_filter";
+  std::string method = "graph";
   std::string features = "off";
   bool fit_at_query = false;
   LidarConfig lidar;
@@ -70,7 +70,7 @@ struct Config {
                  "qw; required"},
         &self.has_T_body_lidar);
     constexpr double kAny = std::numeric_limits<double>::infinity();
-    visit("method", self.method, FieldDoc{"localizer", -kAny, kAny, "map_filter|graph"});
+    visit("method", self.method, FieldDoc{"localizer", -kAny, kAny, "graph|map_filter"});
     visit("features", self.features,
           FieldDoc{"points of a scan that are matched (article 3.2.1): all, spread over the scan "
                    "(off); or its edges and planes only, by the article's smoothness (printed), "

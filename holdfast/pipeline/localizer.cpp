@@ -73,6 +73,7 @@ std::unique_ptr<ScanLocalizer> make_method(const Config& config, map::PriorMap m
   setup.smoother.noise.imu = config.imu;
   setup.graph = config.graph;
   setup.odometry = odometry_setup(config, start.threads);
+  setup.odometry.odometry.max_points = config.graph.odometry_points;
   return std::make_unique<GraphLocalizer>(std::move(map), setup, T_map_body);
 }
 

@@ -30,6 +30,10 @@ struct LidarModel {
   /// half upwards, then upper half downwards), mounted 0.10 m ahead of and 0.15 m above the IMU
   /// with a rotation of about 1.5 degrees.
   static LidarModel rs16();
+
+  /// 128 beams from -22.5 to +22.5 degrees that fire at once, 1024 columns at 10 Hz (as an Ouster
+  /// OS1-128); mounted and as noisy as rs16().
+  static LidarModel os1_128();
 };
 
 }  // namespace holdfast::simulation

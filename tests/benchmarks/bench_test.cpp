@@ -45,6 +45,7 @@ TEST(Figures, OfADistributionAreItsQuantiles) {
   EXPECT_EQ(d.p50, 50);
   EXPECT_EQ(d.p95, 95);
   EXPECT_EQ(d.p99, 99);
+  EXPECT_NEAR(d.p999, 99.9, 1e-9);
   EXPECT_EQ(d.max, 100);
   EXPECT_TRUE(json_of(distribution_of({}))["p50"].is_null());
 }

@@ -35,6 +35,7 @@ class RecordedDrive : public ::testing::Test {
 };
 
 TEST_F(RecordedDrive, IsFilteredBitForBitAsTheLocalizerDoes) {
+  drive_.config.method = "map_filter";
   const auto steps = localize(*log(), drive_.config, drive_.map_dir, drive_.initial_pose);
   const auto scans = run_filter(*log(), drive_);
   ASSERT_TRUE(steps && scans);

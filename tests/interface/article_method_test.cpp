@@ -95,7 +95,7 @@ TEST_F(ArticleMethod, MatchesFewerPointsWhenFeaturesAreSelected) {
 }
 
 TEST_F(ArticleMethod, HasLimitsThatTakeEffect) {
-  const std::string log = "--set features=log ";
+  const std::string log = "--method map_filter --set features=log ";
   expect_run(localize(out / "wide", log), 0);
   expect_run(localize(out / "narrow", log + "--set feature_extraction.plane_sigmas=2.5 --set "
                                             "feature_extraction.edge_sigmas=2.5"),

@@ -123,6 +123,54 @@ TEST_F(Room, AnEdgeHasBothPlanesInOneCell) {
   EXPECT_LT(std::abs(found[0].normal.dot(found[1].normal)), 0.2);
 }
 
+/// A wall at y = 4 up to x, from where on a door stands 14 cm deep in it.
+io::PointCloud wall_with_door_at(double x, std::uint64_t seed) {
+  RandomStream random(seed, "door");
+  Points points;
+  add_patch({x - 3, 4, 0}, {3, 0, 0}, {0, 0, 2.1}, random, points);
+  add_patch({x, 4, 0}, {0, 0.14, 0}, {0, 0, 2.1}, random, points);
+  add_patch({x, 4.14, 0}, {1, 0, 0}, {0, 0, 2.1}, random, points);
+  return cloud_of(std::move(points));
+}
+
+/// Distances of returns from a door jamb at x to the plane that they find.
+struct JambReturns {
+  static constexpr double kRangeSigma = 0.02;
+  double sum = 0;
+  int returns = 0, paired = 0;
+
+  void add(const PriorMap& map, double x, RandomStream& random) {
+    const Vector3d on(x, random.uniform(4.05, 4.09), random.uniform(0.2, 1.9));
+    const Vector3d p = on + Vector3d(kRangeSigma * random.normal(), 0, 0);
+    ++returns;
+    for (const Found& f : find_all(map, 0, p)) {
+      const double d = f.normal.dot(p - f.center);
+      if (std::abs(f.normal.x()) < 0.9 || std::abs(d) > 3 * kRangeSigma) continue;
+      sum += f.normal.x() > 0 ? d : -d;
+      ++paired;
+      return;
+    }
+  }
+};
+
+/// Cells begin at multiples of 0.25 m.
+class ADoorJamb : public ::testing::TestWithParam<double> {};
+
+TEST_P(ADoorJamb, GivesANoiseWithoutMeanWhereverCellsBegin) {
+  const double x = 5.0 + GetParam();
+  JambReturns found;
+  for (std::uint64_t survey = 1; survey <= 8; ++survey) {
+    const BuiltMap built(wall_with_door_at(x, survey));
+    const PriorMap map = focused(built, {4, 3, 1});
+    RandomStream random(survey, "returns");
+    for (int k = 0; k < 1000; ++k) found.add(map, x, random);
+  }
+  EXPECT_GT(found.paired, 0.7 * found.returns);
+  EXPECT_LT(std::abs(found.sum / found.paired), 0.002);  // of one side alone: 16 mm
+}
+
+INSTANTIATE_TEST_SUITE_P(At, ADoorJamb, ::testing::Values(0.0, 0.01, -0.01, 0.03, -0.03, 0.12));
+
 TEST_F(Room, EverySurfaceThatIsFoundLiesNearItsCell) {
   RandomStream random(2, "places");
   int hits = 0;
@@ -131,8 +179,9 @@ TEST_F(Room, EverySurfaceThatIsFoundLiesNearItsCell) {
     for (int level = 0; level < kLevels; ++level) {
       const double cell = built.info().levels[static_cast<std::size_t>(level)].cell_m;
       for (const Found& f : find_all(map, level, p)) {
-        // Its own cell or one of the 26 around it; the centre may stand out by the noise.
-        EXPECT_LT((f.center - p).cwiseAbs().maxCoeff(), 2 * cell + 5 * kNoise);
+        // Of its own cell, one of the 26 around it, or of a neighbour that has adopted it; the centre
+        // may stand out by the noise.
+        EXPECT_LT((f.center - p).cwiseAbs().maxCoeff(), 3 * cell + 5 * kNoise);
         ++hits;
       }
     }

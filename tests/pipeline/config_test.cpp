@@ -37,7 +37,7 @@ TEST(LoadConfig, WithTheExtrinsicTheDefaultsAreComplete) {
   const auto config = load_config("", {kExtrinsic});
   ASSERT_TRUE(config) << config.error().message;
   EXPECT_EQ(config->T_body_lidar.translation, Eigen::Vector3d(0.1, -0.2, 0.3));
-  EXPECT_EQ(config->method, "map_filter");
+  EXPECT_EQ(config->method, "graph");
   const Config defaults;
   EXPECT_EQ(config->start.position_m, defaults.start.position_m);
   EXPECT_EQ(config->map_filter.gate_m, defaults.map_filter.gate_m);

@@ -215,9 +215,17 @@ void remove_near(Offsets& points, const Plane& plane, double band_m) {
   });
 }
 
-// A plane with less of the support of the strongest one in its cell is a ghost of it: a wall
-// smeared by the poses that the map was made with.
+// A plane with less of the support of a parallel one in its cell is a ghost of it: a wall smeared
+// by the poses that the map was made with.
 constexpr double kGhostShare = 0.35;
+constexpr double kParallel = 0.9;  // cosine between normals
+
+bool is_ghost_of_any(const Plane& plane, const std::vector<Plane>& stronger) {
+  return std::any_of(stronger.begin(), stronger.end(), [&](const Plane& other) {
+    return plane.support < kGhostShare * other.support &&
+           std::abs(plane.normal.dot(other.normal)) > kParallel;
+  });
+}
 
 /// Leaves out the planes that live on the points of stronger ones: ghosts, and planes across an
 /// edge, which hold a strip of each of its sides.
@@ -226,14 +234,14 @@ std::vector<Plane> that_stand_alone(std::vector<Plane> planes, Offsets points,
   constexpr double kOwnShare = 0.5;
   std::stable_sort(planes.begin(), planes.end(),
                    [](const Plane& a, const Plane& b) { return a.support > b.support; });
-  const double least = planes.empty() ? 0 : kGhostShare * planes.front().support;
-  std::erase_if(planes, [&](const Plane& plane) {
+  std::vector<Plane> kept;
+  for (const Plane& plane : planes) {
     const int own = count_near(points, plane, 3.0 * options.noise_m);
-    if (plane.support < least || own < kOwnShare * plane.support) return true;
+    if (is_ghost_of_any(plane, kept) || own < kOwnShare * plane.support) continue;
     remove_near(points, plane, 3.5 * options.noise_m);
-    return false;
-  });
-  return planes;
+    kept.push_back(plane);
+  }
+  return kept;
 }
 
 /// The plane of the points near a plane, until these are the same.

@@ -5,37 +5,11 @@
 #include <cstring>
 #include <limits>
 
+#include "holdfast/map/fitting/adopted_planes.hpp"
+#include "holdfast/map/fitting/surface_grid.hpp"
+
 namespace holdfast::map {
 namespace {
-
-/// Surfaces of one level by cell; 0 or 1 + number of the cell's first surface. Covers the tile's
-/// cells and one more on each side, from which empty cells borrow.
-class SurfaceGrid {
- public:
-  SurfaceGrid(double cell_m, int z_low, int z_high)
-      : cell_m_(cell_m),
-        side_(static_cast<int>(kTileSizeM / cell_m) + 2),
-        z_low_(z_low - 1),
-        height_(z_high - z_low + 3),
-        first_(static_cast<std::size_t>(side_) * side_ * height_, 0) {}
-
-  bool covers(const Cell& c) const {
-    return c.x() >= -1 && c.y() >= -1 && c.x() < side_ - 1 && c.y() < side_ - 1 &&
-           c.z() >= z_low_ && c.z() < z_low_ + height_;
-  }
-  std::uint32_t& first(const Cell& c) {
-    return first_[(static_cast<std::size_t>(c.z() - z_low_) * side_ + c.y() + 1) * side_ + c.x() +
-                  1];
-  }
-  double cell_m() const { return cell_m_; }
-
- private:
-  double cell_m_;
-  int side_;
-  int z_low_;
-  int height_;
-  std::vector<std::uint32_t> first_;
-};
 
 /// One level while it is built.
 struct Level {
@@ -167,7 +141,8 @@ void fill_blocks(SurfaceGrid& grid, Level& level) {
   }
 }
 
-/// Fits the surfaces of all cells of the tile, and of the ring of cells around it.
+/// Fits the surfaces of all cells of the tile, and of the ring of cells around it. Cells whose only
+/// plane is a ghost are left empty.
 SurfaceGrid fit_level(const TilePoints& points, double cell_m, int level, const FitOptions& options,
                       std::vector<Cell>& fitted, std::vector<Surface>& surfaces) {
   const PointGrid planes(thinned(points.planes, level), cell_m);
@@ -196,6 +171,8 @@ SurfaceGrid fit_level(const TilePoints& points, double cell_m, int level, const 
   FitOptions line_fit = options;
   line_fit.planes = false;
   if (!points.shared) fit_all(edges, line_fit);
+  drop_ghosts(result, surfaces, fitted);
+  adopt_planes(planes, options, fitted, result, surfaces);
   return result;
 }
 
@@ -204,7 +181,6 @@ Level build_level(const TilePoints& points, double cell_m, int number, const Fit
   level.header.cell_m = static_cast<float>(cell_m);
   std::vector<Cell> fitted;
   SurfaceGrid grid = fit_level(points, cell_m, number, options, fitted, level.surfaces);
-  drop_ghosts(grid, level.surfaces, fitted);
   lay_out_blocks(fitted, level);
   fill_blocks(grid, level);
   level.header.surface_count = static_cast<std::uint32_t>(level.surfaces.size());

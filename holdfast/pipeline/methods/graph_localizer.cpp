@@ -68,7 +68,7 @@ StepReport GraphLocalizer::add_scan(const Scan& scan) {
   {
     StageClock clock(report.times);
     if (witness_) witness_->add_scan(scan);
-    clock.book(Stage::kPredict);
+    clock.book(Stage::kOdometry);
     step(scan, clock, report);
     clock.book(Stage::kHealth);
   }
@@ -79,7 +79,16 @@ StepReport GraphLocalizer::add_scan(const Scan& scan) {
 
 StepReport GraphLocalizer::start(const Scan& scan) {
   StepReport report = start_->add_scan(scan);
-  if (witness_) witness_->add_scan(scan);
+  if (witness_) {
+    StageTimes beside;
+    {
+      StageClock clock(beside);
+      witness_->add_scan(scan);
+      clock.book(Stage::kOdometry);
+    }
+    report.times += beside;
+    report.odom_epoch = witness_->epoch();
+  }
   ++scan_number_;
   const bool found = report.state == State::kTracking || report.state == State::kDegraded;
   // At rest there is nothing to smooth, and the filter knows that the robot does not move.

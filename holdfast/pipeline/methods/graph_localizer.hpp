@@ -20,6 +20,7 @@ struct GraphConfig {
   double map_correlation_m = 0.5;
   double surprise = 40.0;
   std::string odometry = "on";
+  int odometry_points = 2500;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -39,6 +40,8 @@ struct GraphConfig {
                    "and tells when the map cannot be right",
                    -std::numeric_limits<double>::infinity(),
                    std::numeric_limits<double>::infinity(), "on|off"});
+    visit("odometry_points", self.odometry_points,
+          FieldDoc{"odometry.max_points of the odometry beside the graph", 100, 1000000});
   }
 };
 
