@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "holdfast/registration/degeneracy.hpp"
 
@@ -26,12 +27,6 @@ SE3 anchored(const SE3& T_map_body, const ScanPairing& map) {
 
 }  // namespace
 
-MapError map_error(const UpdateOptions& options, double span_s, const NormalEquations& equations) {
-  const double variance = options.map_sigma_m * options.map_sigma_m;
-  return {registration::feigned_offset(equations) + variance * Eigen::Matrix3d::Identity(),
-          options.map_sigma_rad, 2.0 * options.map_sigma_m / std::max(span_s, 1e-3)};
-}
-
 void ScanMatch::book(Stage stage) {
   if (clock_ != nullptr) clock_->book(stage);
 }
@@ -51,8 +46,8 @@ void deskew_scan(const SelectedScan& scan, const MatchState& x, UpdateWorkspace&
   }
 }
 
-double ScanMatch::anneal(int call) {
-  return kAnneal[std::min(static_cast<std::size_t>(call), kAnneal.size() - 1)];
+double ScanMatch::span_s() const {
+  return to_seconds(scan_.scan->end_time - scan_.scan->stamp);
 }
 
 void ScanMatch::deskew(const MatchState& x) {
@@ -70,30 +65,53 @@ void ScanMatch::pair(const MatchState& x) {
 
 /// Have velocity or turning rate moved the points by more than matters?
 bool ScanMatch::is_stale(const MatchState& x) const {
-  const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
-  return (x.v_map - deskewed_.v_map).norm() * span > kRedeskewM ||
-         (x.gyro_bias - deskewed_.gyro_bias).norm() * span > kRedeskewRad;
+  return (x.v_map - deskewed_.v_map).norm() * span_s() > kRedeskewM ||
+         (x.gyro_bias - deskewed_.gyro_bias).norm() * span_s() > kRedeskewRad;
 }
 
-const NormalEquations& ScanMatch::linearise(const MatchState& x) {
-  const bool stale = calls_ == 0 || is_stale(x);
+void ScanMatch::refresh(const MatchState& x, bool by_skew) {
+  const bool stale = calls_ == 0 || by_skew || is_stale(x);
   if (stale) deskew(x);
   const bool far = (x.T_map_body.translation - paired_.translation).norm() > kRepairM ||
                    so3::angle_between(x.T_map_body.rotation, paired_.rotation) > kRepairRad;
   if (stale || far) pair(x);
-  const double scale = anneal(calls_++) * options_.robust_scale;
+}
+
+/// What the pairs say of pose and velocity.
+ScanEquations ScanMatch::without_skew(const MatchState& x) const {
+  ScanEquations e;
+  e.H.topLeftCorner<9, 9>() = raw_.H;
+  // The points still stand where the velocity of the last deskewing put them.
+  e.g.head<9>() = raw_.g + raw_.H.middleCols<3>(kVelocity) * (x.v_map - deskewed_.v_map);
+  if (!options_.velocity_from_skew) fix_velocity(e);
+  return e;
+}
+
+/// The map's own error as this scan feels it. Over the time of the scan it may change by as much as
+/// it is, and part of the information may be feigned.
+MapError ScanMatch::map_error() const {
+  MapError error;
+  error.pose.setZero();
+  error.pose.topLeftCorner<3, 3>() = registration::feigned_offset(raw_);
+  error.pose.diagonal().head<3>().array() += std::pow(options_.map_sigma_m, 2);
+  error.pose.diagonal().tail<3>().array() += std::pow(options_.map_sigma_rad, 2);
+  error.velocity_m_s = 2.0 * options_.map_sigma_m / std::max(span_s(), 1e-3);
+  return error;
+}
+
+ScanEquations ScanMatch::linearise(const MatchState& x, bool by_skew) {
+  refresh(x, by_skew);
+  const auto call = std::min(static_cast<std::size_t>(calls_++), kAnneal.size() - 1);
+  const double scale = kAnneal[call] * options_.robust_scale;
   const SE3 T_anchor_body = anchored(x.T_map_body, map_);
   raw_ = registration::linearise(work_.pairs, T_anchor_body, scale, pool_, work_.partials);
   raw_.feigned = registration::feigned_information(raw_, work_.pairs, T_anchor_body, scale,
                                                    options_.few_pairs);
-  softened_ = raw_;
-  // The points still stand where the velocity of the last deskewing put them.
-  softened_.g += raw_.H.middleCols<3>(kVelocity) * (x.v_map - deskewed_.v_map);
-  if (!options_.velocity_from_skew) fix_velocity(softened_);
-  const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
-  marginalise(map_error(options_, span, raw_), softened_);
+  ScanEquations e =
+      by_skew ? linearise_with_skew(work_.pairs, T_anchor_body, scale) : without_skew(x);
+  marginalise(map_error(), e);
   book(Stage::kSolve);
-  return softened_;
+  return e;
 }
 
 }  // namespace holdfast::filter

@@ -30,14 +30,9 @@ struct UpdateOptions {
   /// start on the move); otherwise the prediction knows it far better.
   bool velocity_from_skew = false;
   /// Let the velocity and both biases follow from it: while the IMU is silent or contradicts the
-  /// scans (skew_match.hpp).
+  /// scans (ScanMatch::linearise).
   bool motion_from_skew = false;
 };
-
-/// The map's own error in a scan that lasts `span_s` and has these equations: over its time it may
-/// change by as much as it is, and part of the information may be feigned.
-MapError map_error(const UpdateOptions& options, double span_s,
-                   const registration::NormalEquations& equations);
 
 /// Buffers that keep their memory from scan to scan.
 struct UpdateWorkspace {
@@ -99,17 +94,25 @@ class ScanMatch {
 
   /// Normal equations at `x`, softened by the map's own error. The robust loss starts wide and
   /// narrows from call to call: kCalls calls until it is as narrow as the options say.
+  ///
+  /// `by_skew`: for a robot whose motion is not known from its IMU. While that is silent, or its
+  /// biases were let go, the skew of a scan depends on the very motion that the scan is to tell.
+  /// Taken as known, a wrong velocity or rate would move the pose, and the pose the next velocity,
+  /// to and fro and ever farther. Deskews and pairs anew in each call.
   static constexpr int kCalls = 3;
-  static double anneal(int call);
-  const registration::NormalEquations& linearise(const MatchState& x);
+  ScanEquations linearise(const MatchState& x, bool by_skew);
 
-  /// The equations of the last call without the map's own error.
+  /// Pose and velocity of the last call, without the map's own error.
   const registration::NormalEquations& raw() const { return raw_; }
 
  private:
   void deskew(const MatchState& x);
   void pair(const MatchState& x);
   bool is_stale(const MatchState& x) const;
+  void refresh(const MatchState& x, bool by_skew);
+  ScanEquations without_skew(const MatchState& x) const;
+  MapError map_error() const;
+  double span_s() const;
   void book(Stage stage);
 
   const ScanPairing& map_;
@@ -122,7 +125,6 @@ class ScanMatch {
   SE3 paired_;
   int calls_ = 0;
   registration::NormalEquations raw_;
-  registration::NormalEquations softened_;
 };
 
 }  // namespace holdfast::filter

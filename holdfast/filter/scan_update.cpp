@@ -2,14 +2,11 @@
 
 #include <Eigen/Cholesky>
 
-#include "holdfast/filter/skew_match.hpp"
-
 namespace holdfast::filter {
 namespace {
 
 using registration::kPosition;
 using registration::kRotation;
-using registration::NormalEquations;
 
 // A change below which another iteration would change nothing that matters.
 constexpr double kConvergedM = 1e-4;
@@ -36,37 +33,12 @@ struct System {
   Vector15d b;
 
   System(const FilterState& prior, const Matrix15d& prior_information, const FilterState& state,
-         const SkewEquations& scan) {
+         const ScanEquations& scan) {
     const Vector15d difference = state.minus(prior);
     const Matrix15d J = chart_jacobian(difference);
     A = J.transpose() * prior_information * J + scan.H;
     b = J.transpose() * (prior_information * difference) + scan.g;
   }
-};
-
-/// What a scan says, by skew or without, at each linearisation.
-class Residuals {
- public:
-  Residuals(const ScanPairing& map, const SelectedScan& scan, const UpdateOptions& options,
-            WorkerPool& pool, UpdateWorkspace& work, StageClock* clock)
-      : by_skew_(options.motion_from_skew),
-        match_(map, scan, options, pool, work, clock),
-        skew_match_(map, scan, options, pool, work, clock) {}
-
-  SkewEquations linearise(const MatchState& x) {
-    if (by_skew_) return skew_match_.linearise(x);
-    const NormalEquations& softened = match_.linearise(x);
-    SkewEquations e;
-    e.H.topLeftCorner<9, 9>() = softened.H;
-    e.g.head<9>() = softened.g;
-    return e;
-  }
-  const NormalEquations& raw() const { return by_skew_ ? skew_match_.raw() : match_.raw(); }
-
- private:
-  bool by_skew_;
-  ScanMatch match_;
-  SkewMatch skew_match_;
 };
 
 bool is_small(const Vector15d& delta) {
@@ -80,13 +52,14 @@ UpdateResult update_with_scan(const ScanPairing& map, const SelectedScan& scan,
                               const Eigen::Vector3d& gravity, const UpdateOptions& options,
                               WorkerPool& pool, UpdateWorkspace& work, const FilterState& prior,
                               FilterState& state, StageClock* clock) {
-  Residuals residuals(map, scan, options, pool, work, clock);
+  ScanMatch match(map, scan, options, pool, work, clock);
   const Matrix15d prior_information = inverse_of(prior.P);
   Matrix15d information = prior_information;
   UpdateResult result;
   for (; result.iterations < options.max_iterations; ++result.iterations) {
-    const SkewEquations softened = residuals.linearise(match_state_of(state, gravity));
-    result.usable = residuals.raw().weight >= kLeastWeight;
+    const ScanEquations softened = 
+        match.linearise(match_state_of(state, gravity), options.motion_from_skew);
+    result.usable = match.raw().weight >= kLeastWeight;
     if (!result.usable) break;
     const System system(prior, prior_information, state, softened);
     information = system.A;
@@ -94,7 +67,7 @@ UpdateResult update_with_scan(const ScanPairing& map, const SelectedScan& scan,
     state.add(delta);
     if (result.iterations + 1 >= ScanMatch::kCalls && is_small(delta)) break;
   }
-  result.equations = residuals.raw();
+  result.equations = match.raw();
   if (result.usable) {
     state.P = inverse_of(information);
     state.P = (0.5 * (state.P + state.P.transpose())).eval();

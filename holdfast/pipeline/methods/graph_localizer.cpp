@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "holdfast/filter/skew_match.hpp"
 #include "holdfast/registration/degeneracy.hpp"
 
 namespace holdfast::pipeline {
@@ -25,8 +24,9 @@ constexpr double kMostlyMapped = 0.5;   // share of returns; below, an odometry 
 constexpr double kHardlyMapped = 0.2;   // below, this is outside of the map
 constexpr double kMostScansAlike = 30;  // of the same part of the map, however slow the robot
 
-double largest_sigma(const Matrix18d& P, int offset) {
-  const Eigen::Matrix3d block = P.block<3, 3>(offset, offset);
+template <class Covariance>
+double largest_sigma(const Covariance& P, int offset) {
+  const Eigen::Matrix3d block = P.template block<3, 3>(offset, offset);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(block, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
 }
@@ -141,6 +141,7 @@ void GraphLocalizer::step(const Scan& scan, StageClock& clock, StepReport& repor
   clock.book(Stage::kSolve);
   travel_per_scan_m_ =
       (smoother_.newest().T_map_body.translation - before.T_map_body.translation).norm();
+  estimate_map_error(found);
   describe(found, report);
   compare_with_odometry(found);
   judge(found, report);
@@ -243,24 +244,16 @@ GraphLocalizer::Match GraphLocalizer::match_finely(const filter::UpdateOptions& 
                                                    StageClock& clock) {
   const filter::PairingWith<map::PriorMap> pairing(*map_);
   filter::ScanMatch scan(pairing, scan_, options, pool_, work_, &clock);
-  filter::SkewMatch skewed(pairing, scan_, options, pool_, work_, &clock);
   estimator::OptimiseOptions how;
   how.min_measurements = filter::ScanMatch::kCalls;
   how.max_measurements = options.max_iterations;
   Match found;
   found.optimised = smoother_.optimise(
       [&](const NodeState& x) -> std::optional<estimator::MapFactor> {
-        const bool open = motion_is_open();
-        estimator::MapFactor factor;
-        if (open) {
-          const filter::SkewEquations e = skewed.linearise(match_state_of(x));
-          factor = estimator::MapFactor(e.H, e.g, skewed.raw().cost, x);
-        } else {
-          factor = estimator::MapFactor(scan.linearise(match_state_of(x)), x);
-        }
-        found.equations = open ? skewed.raw() : scan.raw();
+        const filter::ScanEquations e = scan.linearise(match_state_of(x), motion_is_open());
+        found.equations = scan.raw();
         if (found.equations.weight < kLeastWeight) return std::nullopt;
-        return factor;
+        return estimator::MapFactor(e.H, e.g, scan.raw().cost, x);
       },
       how);
   return found;
@@ -342,14 +335,31 @@ double GraphLocalizer::mapped_share(const SE3& T_map_body) const {
 
 void GraphLocalizer::compare_with_odometry(const Match& match) {
   if (!witness_ || !match.usable) return;
-  witness_->compare(
-      {smoother_.newest().T_map_body, smoother_.covariance_of_newest().topLeftCorner<6, 6>()},
-      match.equations.weight / static_cast<double>(scan_.selected.size()));
+  witness_->compare({smoother_.newest().T_map_body, pose_covariance()},
+                    match.equations.weight / static_cast<double>(scan_.selected.size()));
+}
+
+/// The map's own error is the same for all scans of a place. It does not average out as their noise
+/// does, so that it stands beside what the graph knows given the map.
+void GraphLocalizer::estimate_map_error(const Match& match) {
+  if (!match.usable) return;
+  const filter::UpdateOptions o = options();
+  const filter::PatchModel model{
+      setup_.graph.patch_error_share, map_->info().noise_m, o.association.range_sigma_m,
+      o.association.surface_sigma_m, scan_.T_body_lidar.translation.cast<float>()};
+  const SE3& T = smoother_.newest().T_map_body;
+  map_error_ = patches_.of(work_.pairs, {T.rotation, T.translation - map_->anchor()},
+                           o.robust_scale, match.equations.H.topLeftCorner<6, 6>(), model);
+}
+
+/// Of the newest pose, in the order of StepReport::pose_covariance.
+filter::Matrix6d GraphLocalizer::pose_covariance() const {
+  return smoother_.covariance_of_newest().topLeftCorner<6, 6>() + map_error_;
 }
 
 void GraphLocalizer::describe(const Match& match, StepReport& report) const {
   const auto& e = match.equations;
-  const Matrix18d P = smoother_.covariance_of_newest();
+  const filter::Matrix6d P = pose_covariance();
   report.T_map_body = smoother_.newest().T_map_body;
   report.matches = static_cast<int>(e.pairs);
   report.inlier_share =
@@ -357,7 +367,7 @@ void GraphLocalizer::describe(const Match& match, StepReport& report) const {
   report.mean_abs_residual_m = e.weight > 0 ? e.abs_residual / e.weight : 0.0;
   report.sigma_trans_m = largest_sigma(P, NodeState::kP);
   report.sigma_rot_rad = largest_sigma(P, NodeState::kR);
-  report.pose_covariance = P.topLeftCorner<6, 6>();
+  report.pose_covariance = P;
   if (match.usable)
     report.weak_directions = registration::weak_directions(e, setup_.start.filter.weak_sigma_m);
 }

@@ -7,6 +7,7 @@
 
 #include "baselines/map_filter.hpp"
 #include "holdfast/estimator/fixed_lag_smoother.hpp"
+#include "holdfast/filter/patch_error.hpp"
 #include "holdfast/filter/scan_match.hpp"
 #include "holdfast/pipeline/methods/odometry_witness.hpp"
 #include "holdfast/pipeline/methods/scan_localizer.hpp"
@@ -16,7 +17,8 @@ namespace holdfast::pipeline {
 /// What the graph adds to the settings of `map_filter`, with which it shares the matching.
 struct GraphConfig {
   double gravity_sigma_m_s2 = 0.05;
-  double map_error_share = 0.05;
+  double map_error_share = 0.02;
+  double patch_error_share = 1.0;
   double map_correlation_m = 0.5;
   double surprise = 40.0;
   std::string odometry = "on";
@@ -29,6 +31,10 @@ struct GraphConfig {
     visit("map_error_share", self.map_error_share,
           FieldDoc{"the map's error over the extent of a scan, as a share of its points' noise",
                    1e-4, 10.0});
+    visit("patch_error_share", self.patch_error_share,
+          FieldDoc{"how far a surface of the map is off, as a share of its thickness beyond the "
+                   "noise of its points",
+                   0.0, 10.0});
     visit("map_correlation_m", self.map_correlation_m,
           FieldDoc{"way over which the map's own error stays the same", 1e-3, 100.0});
     visit("surprise", self.surprise,
@@ -95,6 +101,8 @@ class GraphLocalizer : public ScanLocalizer {
   void carry_on_by_odometry(Match& match);
   double mapped_share(const SE3& T_map_body) const;
   filter::UpdateOptions options() const;
+  void estimate_map_error(const Match& match);
+  filter::Matrix6d pose_covariance() const;
   void describe(const Match& match, StepReport& report) const;
   void compare_with_odometry(const Match& match);
   void judge(const Match& match, StepReport& report) const;
@@ -107,6 +115,8 @@ class GraphLocalizer : public ScanLocalizer {
   preprocess::ImuSegment segment_;
   filter::UpdateWorkspace work_;
   filter::SelectedScan scan_;
+  filter::PatchError patches_;
+  filter::Matrix6d map_error_ = filter::Matrix6d::Zero();  ///< of the last usable scan
   estimator::FixedLagSmoother smoother_;
   std::unique_ptr<OdometryWitness> witness_;        ///< none: switched off
   std::optional<estimator::BetweenFactor> motion_;  ///< since the node before, by the odometry

@@ -1,4 +1,4 @@
-#include "holdfast/filter/skew_match.hpp"
+#include "holdfast/filter/skew_equations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 
 #include "holdfast/core/random.hpp"
 #include "holdfast/preprocess/deskew.hpp"
+#include "holdfast/registration/normal_equations.hpp"
 
 namespace holdfast::filter {
 namespace {
@@ -80,7 +81,7 @@ struct SlowScan {
   registration::Correspondences pairs;
 };
 
-TEST(SkewEquations, AreThoseOfTheDerivativesOfDeskewedPoints) {
+TEST(LinearisedWithSkew, AreThoseOfTheDerivativesOfDeskewedPoints) {
   const SlowScan s;
   constexpr double kWide = 1e6;  // of the robust loss: no point counts less than another
   const auto [H, g] = linearise_with_skew(s.pairs, s.x.T_map_body, kWide);
@@ -108,7 +109,7 @@ TEST(SkewEquations, AreThoseOfTheDerivativesOfDeskewedPoints) {
   }
 }
 
-TEST(SkewEquations, AgreeWithThoseOfPoseAndVelocityAndTheirRobustWeights) {
+TEST(LinearisedWithSkew, AgreeWithThoseOfPoseAndVelocityAndTheirRobustWeights) {
   const SlowScan s;
   constexpr double kNarrow = 0.02;
   const auto [H, g] = linearise_with_skew(s.pairs, s.x.T_map_body, kNarrow);
