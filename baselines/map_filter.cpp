@@ -1,8 +1,9 @@
 #include "baselines/map_filter.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "holdfast/filter/account.hpp"
 #include "holdfast/registration/degeneracy.hpp"
 
 namespace holdfast::baselines {
@@ -18,13 +19,6 @@ constexpr double kClearlyMore = 1.01;
 constexpr double kSkewToldM = 0.04;            // skew that is worth being estimated
 constexpr double kCoarseFromM = 0.1;           // uncertainty from which coarse planes are asked
 constexpr float kCoarseSurfaceSigmaM = 0.05F;  // while coarse planes are matched
-
-double largest_sigma(const Matrix15d& P, int offset) {
-  const Eigen::Matrix3d block = P.block<3, 3>(offset, offset);
-  return std::sqrt(
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block, Eigen::EigenvaluesOnly)
-                        .eigenvalues()[2]));
-}
 
 }  // namespace
 
@@ -152,7 +146,7 @@ UpdateResult MapFilter::correct_from(int coarsest, const FilterState& predicted,
   // As long as the velocity is hardly known, the skew of the scan tells it best; and a wrong one
   // would displace the pose by half of the skew that it makes up.
   const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
-  const bool fast_or_slow = largest_sigma(predicted.P, FilterState::kV) * span > kSkewToldM;
+  const bool fast_or_slow = filter::largest_sigma(predicted.P, FilterState::kV) * span > kSkewToldM;
   const bool imu_in_doubt = biases_before_hold_ || predicted.t < last_surprise_ + kSecond;
   UpdateResult update;
   for (int level = coarsest; level >= 0; --level) {
@@ -161,7 +155,8 @@ UpdateResult MapFilter::correct_from(int coarsest, const FilterState& predicted,
     how.velocity_from_skew = fast_or_slow;
     how.motion_from_skew = imu_in_doubt;
     if (level > 0) {
-      const auto reach = static_cast<float>(3.0 * largest_sigma(predicted.P, FilterState::kP));
+      const auto reach =
+          static_cast<float>(3.0 * filter::largest_sigma(predicted.P, FilterState::kP));
       how.association.gate_m = std::max(how.association.gate_m, reach);
       how.association.surface_sigma_m = kCoarseSurfaceSigmaM;
       how.association.ambiguity_sigmas = 0;
@@ -175,7 +170,7 @@ UpdateResult MapFilter::correct_from(int coarsest, const FilterState& predicted,
 UpdateResult MapFilter::correct(StageClock& clock) {
   if (scan_.selected.empty()) return {};
   const FilterState predicted = state_;
-  const double sigma = largest_sigma(predicted.P, FilterState::kP);
+  const double sigma = filter::largest_sigma(predicted.P, FilterState::kP);
   UpdateResult update = correct_from(0, predicted, clock);
   if (sigma > kCoarseFromM) {
     // The pose may be off by more than the finest planes reach: let coarser ones lead, too.
@@ -238,17 +233,12 @@ void MapFilter::track(StageClock& clock, StepReport& report) {
 }
 
 void MapFilter::describe(const UpdateResult& update, StepReport& report) const {
-  const auto& e = update.equations;
   report.T_map_body = state_.T_map_body;
-  report.matches = static_cast<int>(e.pairs);
-  report.inlier_share =
-      scan_.selected.empty() ? 0.0 : e.weight / static_cast<double>(scan_.selected.size());
-  report.mean_abs_residual_m = e.weight > 0 ? e.abs_residual / e.weight : 0.0;
-  report.sigma_trans_m = largest_sigma(state_.P, FilterState::kP);
-  report.sigma_rot_rad = largest_sigma(state_.P, FilterState::kR);
-  report.pose_covariance = state_.P.topLeftCorner<6, 6>();
+  filter::report_match(update.equations, scan_.selected.size(), report);
+  filter::report_covariance(state_.P.topLeftCorner<6, 6>(), report);
   if (update.usable) {
-    report.weak_directions = registration::weak_directions(e, setup_.filter.weak_sigma_m);
+    report.weak_directions =
+        registration::weak_directions(update.equations, setup_.filter.weak_sigma_m);
   }
 }
 

@@ -185,11 +185,13 @@ void add_shares(const char* course, const StepFigures& f, Table& table) {
 
 constexpr const char* kTimesNote =
     "Thread CPU time. A step is all of the default localizer's work on one scan, with the odometry "
-    "beside it; map_filter has neither window nor odometry; the k-d tree's time is its registration "
+    "beside it; map_filter has neither window nor odometry; the k-d tree's time is its "
+    "registration "
     "alone, given map_filter's prediction and deskewed points; reading is the decoding of a scan "
     "and of the IMU readings before it from a bag.\n";
 constexpr const char* kSharesNote =
-    "Shares of the step by stage; scans in TRACKING or DEGRADED; position errors. The k-d tree's is "
+    "Shares of the step by stage; scans in TRACKING or DEGRADED; position errors. The k-d tree's "
+    "is "
     "of single registrations from map_filter's predictions, which its noisy planes hold it to.\n";
 
 }  // namespace
@@ -204,8 +206,8 @@ Result<BenchReport> measure_step(const BenchOptions& options) {
     StepFigures figures;
     for (auto seed = options.seeds.first; seed <= options.seeds.last; ++seed) {
       options.progress(done++ / all, fmt::format("{}, seed {}", course.name, seed));
-      const DriveSpec spec{course.scenario, seed,           options.duration_s,
-                           options.threads, options.settings, course.lidar()};
+      const DriveSpec spec{course.scenario,  seed,          options.duration_s, options.threads,
+                           options.settings, course.lidar()};
       if (auto added = add_drive(spec, figures); !added) return added.error();
     }
     report.data["results"].push_back(json_of(course.name, figures));

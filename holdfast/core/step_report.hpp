@@ -41,8 +41,8 @@ enum class Stage : std::uint8_t {
   kSolve,
   kHealth
 };
-constexpr std::array<std::string_view, 8> kStageNames = {
-    "start", "odometry", "select", "predict", "deskew", "associate", "solve", "health"};
+constexpr std::array<std::string_view, 8> kStageNames = {"start",  "odometry",  "select", "predict",
+                                                         "deskew", "associate", "solve",  "health"};
 
 /// Thread CPU time of one step, ms.
 struct StageTimes {

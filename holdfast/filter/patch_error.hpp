@@ -9,9 +9,9 @@ namespace holdfast::filter {
 
 /// How far off the surfaces of a map are.
 struct PatchModel {
-  double share = 1;               ///< of its excess thickness, by which a surface is off
-  double noise_m = 0;             ///< of the map's points: what makes a plane thick that is one
-  float range_sigma_m = 0.02F;    ///< as the pairs were weighted with
+  double share = 1;             ///< of its excess thickness, by which a surface is off
+  double noise_m = 0;           ///< of the map's points: what makes a plane thick that is one
+  float range_sigma_m = 0.02F;  ///< as the pairs were weighted with
   float surface_sigma_m = 0.003F;
   Eigen::Vector3f p_body_lidar = Eigen::Vector3f::Zero();
 };

@@ -46,9 +46,7 @@ void deskew_scan(const SelectedScan& scan, const MatchState& x, UpdateWorkspace&
   }
 }
 
-double ScanMatch::span_s() const {
-  return to_seconds(scan_.scan->end_time - scan_.scan->stamp);
-}
+double ScanMatch::span_s() const { return to_seconds(scan_.scan->end_time - scan_.scan->stamp); }
 
 void ScanMatch::deskew(const MatchState& x) {
   deskew_scan(scan_, x, work_);

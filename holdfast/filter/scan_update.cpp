@@ -57,7 +57,7 @@ UpdateResult update_with_scan(const ScanPairing& map, const SelectedScan& scan,
   Matrix15d information = prior_information;
   UpdateResult result;
   for (; result.iterations < options.max_iterations; ++result.iterations) {
-    const ScanEquations softened = 
+    const ScanEquations softened =
         match.linearise(match_state_of(state, gravity), options.motion_from_skew);
     result.usable = match.raw().weight >= kLeastWeight;
     if (!result.usable) break;

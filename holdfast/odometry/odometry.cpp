@@ -1,9 +1,10 @@
 #include "holdfast/odometry/odometry.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 
+#include "holdfast/filter/account.hpp"
 #include "holdfast/odometry/local_reference.hpp"
 #include "holdfast/odometry/surroundings/local_pairing.hpp"
 #include "holdfast/odometry/surroundings/sight_lines.hpp"
@@ -35,15 +36,6 @@ constexpr std::size_t kEnoughPoints = 300;  // to contradict anything
 constexpr double kNormalSigma = 0.005;      // rad, common to the normals of a scan
 constexpr double kLocalSeconds = 2.0;       // for which a scan meets what was seen before
 constexpr int kSettledKeyframes = 10;       // from which it is
-
-double largest_sigma(const Eigen::Matrix3d& P) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(P, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
-}
-
-double largest_sigma(const filter::Matrix15d& P, int offset) {
-  return largest_sigma(Eigen::Matrix3d(P.block<3, 3>(offset, offset)));
-}
 
 preprocess::ScanSelectionConfig selection_of(const Odometry::Setup& setup) {
   preprocess::ScanSelectionConfig selection = setup.selection;
@@ -155,15 +147,16 @@ UpdateResult Odometry::correct_at(int level, const FilterState& predicted, Stage
   filter::UpdateOptions how = options();
   // Walls are parallel to a way that nothing measures only as well as normals are known: while the
   // way is uncertain, they shift sideways by as much.
-  const double way = std::min(largest_sigma(predicted.P, FilterState::kP),
-                              kLocalSeconds * largest_sigma(predicted.P, FilterState::kV));
+  const double way = std::min(filter::largest_sigma(predicted.P, FilterState::kP),
+                              kLocalSeconds * filter::largest_sigma(predicted.P, FilterState::kV));
   how.map_sigma_m = std::hypot(how.map_sigma_m, kNormalSigma * way);
   how.map_sigma_rad = 0.1 * how.map_sigma_m;
   how.association.level = level;
   // As long as nothing else tells the velocity, the skew of the scan does.
-  how.velocity_from_skew = largest_sigma(predicted.P, FilterState::kV) * span > kSkewToldM;
+  how.velocity_from_skew = filter::largest_sigma(predicted.P, FilterState::kV) * span > kSkewToldM;
   if (level > 0) {
-    const auto reach = static_cast<float>(3.0 * largest_sigma(predicted.P, FilterState::kP));
+    const auto reach =
+        static_cast<float>(3.0 * filter::largest_sigma(predicted.P, FilterState::kP));
     how.association.gate_m = std::max(how.association.gate_m, reach);
     how.association.surface_sigma_m = kCoarseSurfaceSigmaM;
   }
@@ -174,7 +167,7 @@ UpdateResult Odometry::correct_at(int level, const FilterState& predicted, Stage
 UpdateResult Odometry::correct(StageClock& clock) {
   if (scan_.selected.empty()) return {};
   const FilterState predicted = state_;
-  const double growth = largest_sigma(predicted.P, FilterState::kP) - sigma_at_scan_m_;
+  const double growth = filter::largest_sigma(predicted.P, FilterState::kP) - sigma_at_scan_m_;
   if (growth > kCoarseFromM) {
     // The pose may be off by more than the finest planes reach: coarser ones lead.
     if (!correct_at(1, predicted, clock).usable) state_ = predicted;
@@ -239,7 +232,7 @@ UpdateResult Odometry::release_biases(const UpdateResult& update, Passage& passa
 void Odometry::track(StageClock& clock, OdometryReport& report) {
   Passage passage = pass(report);
   clock.book(Stage::kPredict);
-  const double growth = largest_sigma(state_.P, FilterState::kP) - sigma_at_scan_m_;
+  const double growth = filter::largest_sigma(state_.P, FilterState::kP) - sigma_at_scan_m_;
   if (growth > setup_.odometry.lost_sigma_m) {
     begin_epoch("too long without a scan that fits", report);
     return;
@@ -278,7 +271,7 @@ void Odometry::accept(const UpdateResult& update, const Passage& passage, StageC
     return;
   }
   count_from_here(state_, gravity_);
-  sigma_at_scan_m_ = largest_sigma(state_.P, FilterState::kP);
+  sigma_at_scan_m_ = filter::largest_sigma(state_.P, FilterState::kP);
   const double memory = keyframes_ == 0 ? 1.0 : kShareMemory;
   usual_share_ += memory * (report.step.inlier_share - usual_share_);
   const bool weak = !report.step.weak_directions.empty();
@@ -324,16 +317,13 @@ void Odometry::add_increment(const Passage& passage, OdometryReport& report) {
 }
 
 void Odometry::describe(const UpdateResult& update, OdometryReport& report) const {
-  const auto& e = update.equations;
   StepReport& step = report.step;
-  step.matches = static_cast<int>(e.pairs);
-  step.inlier_share =
-      scan_.selected.empty() ? 0.0 : e.weight / static_cast<double>(scan_.selected.size());
-  step.mean_abs_residual_m = e.weight > 0 ? e.abs_residual / e.weight : 0.0;
-  step.sigma_trans_m = largest_sigma(Eigen::Matrix3d(drift_.topLeftCorner<3, 3>()));
-  step.sigma_rot_rad = largest_sigma(Eigen::Matrix3d(drift_.bottomRightCorner<3, 3>()));
+  filter::report_match(update.equations, scan_.selected.size(), step);
+  step.sigma_trans_m = filter::largest_sigma(drift_, 0);
+  step.sigma_rot_rad = filter::largest_sigma(drift_, 3);
   if (update.usable) {
-    step.weak_directions = registration::weak_directions(e, setup_.odometry.weak_sigma_m);
+    step.weak_directions =
+        registration::weak_directions(update.equations, setup_.odometry.weak_sigma_m);
   }
 }
 

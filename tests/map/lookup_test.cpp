@@ -179,8 +179,8 @@ TEST_F(Room, EverySurfaceThatIsFoundLiesNearItsCell) {
     for (int level = 0; level < kLevels; ++level) {
       const double cell = built.info().levels[static_cast<std::size_t>(level)].cell_m;
       for (const Found& f : find_all(map, level, p)) {
-        // Of its own cell, one of the 26 around it, or of a neighbour that has adopted it; the centre
-        // may stand out by the noise.
+        // Of its own cell, one of the 26 around it, or of a neighbour that has adopted it; the
+        // centre may stand out by the noise.
         EXPECT_LT((f.center - p).cwiseAbs().maxCoeff(), 3 * cell + 5 * kNoise);
         ++hits;
       }

@@ -1,9 +1,9 @@
 #include "holdfast/pipeline/methods/graph_localizer.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "holdfast/filter/account.hpp"
 #include "holdfast/registration/degeneracy.hpp"
 
 namespace holdfast::pipeline {
@@ -23,13 +23,6 @@ constexpr double kSkewToldM = 0.005;    // skew that is worth being estimated
 constexpr double kMostlyMapped = 0.5;   // share of returns; below, an odometry sees more
 constexpr double kHardlyMapped = 0.2;   // below, this is outside of the map
 constexpr double kMostScansAlike = 30;  // of the same part of the map, however slow the robot
-
-template <class Covariance>
-double largest_sigma(const Covariance& P, int offset) {
-  const Eigen::Matrix3d block = P.template block<3, 3>(offset, offset);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(block, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
-}
 
 NodeState node_of(const filter::FilterState& s, const Eigen::Vector3d& gravity) {
   return {s.t, s.T_map_body, s.v_map, s.accel_bias, s.gyro_bias, gravity};
@@ -185,7 +178,8 @@ void GraphLocalizer::allow_for_silence() {
   const bool between = segment_.longest_gap_ns > filter::kLongestHold && segment_.held_ns == 0;
   if (between) segment_.held_ns = segment_.longest_gap_ns;
   silent_ = segment_.held_ns > filter::kLongestHold;
-  if (silent_ && !before_hold_) before_hold_ = ImuState{smoother_.newest(), smoother_.covariance_of_newest()};
+  if (silent_ && !before_hold_)
+    before_hold_ = ImuState{smoother_.newest(), smoother_.covariance_of_newest()};
   if (!before_hold_ || (silent_ && !between)) return;
   restore_biases();
   if (!silent_) before_hold_.reset();
@@ -214,7 +208,7 @@ GraphLocalizer::Match GraphLocalizer::match(const NodeState& predicted, StageClo
   Match found;
   if (!scan_.selected.empty()) {
     found = match_finely(options(), clock);
-    const double sigma = largest_sigma(smoother_.covariance_of_prediction(), NodeState::kP);
+    const double sigma = filter::largest_sigma(smoother_.covariance_of_prediction(), NodeState::kP);
     if (sigma > kCoarseFromM) {
       const NodeState direct = smoother_.newest();
       if (lead_by_coarse_planes(predicted, sigma, clock)) {
@@ -263,8 +257,8 @@ GraphLocalizer::Match GraphLocalizer::match_finely(const filter::UpdateOptions& 
 bool GraphLocalizer::motion_is_open() const {
   const double span = to_seconds(scan_.scan->end_time - scan_.scan->stamp);
   const Matrix18d P = smoother_.covariance_of_prediction();
-  return span * largest_sigma(P, NodeState::kV) > kSkewToldM ||
-         span * largest_sigma(P, NodeState::kBg) * kLeverM > kSkewToldM;
+  return span * filter::largest_sigma(P, NodeState::kV) > kSkewToldM ||
+         span * filter::largest_sigma(P, NodeState::kBg) * kLeverM > kSkewToldM;
 }
 
 /// Where the prediction may be off by more than the finest planes reach, coarser ones give a guess.
@@ -344,9 +338,9 @@ void GraphLocalizer::compare_with_odometry(const Match& match) {
 void GraphLocalizer::estimate_map_error(const Match& match) {
   if (!match.usable) return;
   const filter::UpdateOptions o = options();
-  const filter::PatchModel model{
-      setup_.graph.patch_error_share, map_->info().noise_m, o.association.range_sigma_m,
-      o.association.surface_sigma_m, scan_.T_body_lidar.translation.cast<float>()};
+  const filter::PatchModel model{setup_.graph.patch_error_share, map_->info().noise_m,
+                                 o.association.range_sigma_m, o.association.surface_sigma_m,
+                                 scan_.T_body_lidar.translation.cast<float>()};
   const SE3& T = smoother_.newest().T_map_body;
   map_error_ = patches_.of(work_.pairs, {T.rotation, T.translation - map_->anchor()},
                            o.robust_scale, match.equations.H.topLeftCorner<6, 6>(), model);
@@ -358,18 +352,13 @@ filter::Matrix6d GraphLocalizer::pose_covariance() const {
 }
 
 void GraphLocalizer::describe(const Match& match, StepReport& report) const {
-  const auto& e = match.equations;
-  const filter::Matrix6d P = pose_covariance();
   report.T_map_body = smoother_.newest().T_map_body;
-  report.matches = static_cast<int>(e.pairs);
-  report.inlier_share =
-      scan_.selected.empty() ? 0.0 : e.weight / static_cast<double>(scan_.selected.size());
-  report.mean_abs_residual_m = e.weight > 0 ? e.abs_residual / e.weight : 0.0;
-  report.sigma_trans_m = largest_sigma(P, NodeState::kP);
-  report.sigma_rot_rad = largest_sigma(P, NodeState::kR);
-  report.pose_covariance = P;
-  if (match.usable)
-    report.weak_directions = registration::weak_directions(e, setup_.start.filter.weak_sigma_m);
+  filter::report_match(match.equations, scan_.selected.size(), report);
+  filter::report_covariance(pose_covariance(), report);
+  if (match.usable) {
+    report.weak_directions =
+        registration::weak_directions(match.equations, setup_.start.filter.weak_sigma_m);
+  }
 }
 
 void GraphLocalizer::judge(const Match& match, StepReport& report) const {

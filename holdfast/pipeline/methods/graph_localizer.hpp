@@ -123,7 +123,7 @@ class GraphLocalizer : public ScanLocalizer {
   double last_mapped_share_ = 1;
   std::uint64_t scan_number_ = 0;
   double travel_per_scan_m_ = 0;
-  bool silent_ = false;  ///< the IMU, for most of the newest interval
+  bool silent_ = false;                  ///< the IMU, for most of the newest interval
   std::optional<ImuState> before_hold_;  ///< while it is
 };
 

@@ -1,8 +1,9 @@
 #include "holdfast/pipeline/methods/query_matching.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "holdfast/filter/account.hpp"
 
 namespace holdfast::pipeline {
 namespace {
@@ -11,11 +12,6 @@ using filter::FilterState;
 
 constexpr double kLeverM = 10.0;  // at which an error of the rotation is as large as of a range
 constexpr TimeNs kImuMemory = 2 * kSecond;
-
-double largest_sigma(const Eigen::Matrix3d& P) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(P, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
-}
 
 }  // namespace
 
@@ -93,9 +89,7 @@ void QueryMatching::describe(const registration::FitAtQueryResult& found,
   report.mean_abs_residual_m =
       (found.edges * found.mean_abs_edge_m + found.planes * found.mean_abs_plane_m) /
       std::max(1, matches);
-  report.pose_covariance = state_.P.topLeftCorner<6, 6>();
-  report.sigma_trans_m = largest_sigma(state_.P.block<3, 3>(FilterState::kP, FilterState::kP));
-  report.sigma_rot_rad = largest_sigma(state_.P.block<3, 3>(FilterState::kR, FilterState::kR));
+  filter::report_covariance(state_.P.topLeftCorner<6, 6>(), report);
 }
 
 /// Article 3.1.2, to the last point (see preprocess::ScanMotion).
