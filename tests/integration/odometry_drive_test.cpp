@@ -103,7 +103,7 @@ class Tunnel : public ::testing::TestWithParam<std::uint64_t> {};
 TEST_P(Tunnel, TheWayIsKnownAsWellAsTheIncrementsSay) {
   const Driven driven = simulated("tunnel", GetParam(), 40);
   EXPECT_EQ(driven.breaks, 0);
-  EXPECT_LT(driven.drift(50).norm(), 0.004);
+  EXPECT_LT(driven.drift(50).norm(), 0.003);
   // Errors along the axis last until something tells them, so that one of them is many.
   ASSERT_FALSE(driven.sigmas_off.empty());
   EXPECT_LT(*std::max_element(driven.sigmas_off.begin(), driven.sigmas_off.end()), 6.0);

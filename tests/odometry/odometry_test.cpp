@@ -146,7 +146,7 @@ TEST_P(InASmallRoom, TheHeightFollowsNoNoiseAfterAStartOnTheMove) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(MetresASecond, InASmallRoom, ::testing::Values(1.2, 2.0));
+INSTANTIATE_TEST_SUITE_P(MetresASecond, InASmallRoom, ::testing::Values(0.2, 0.5, 1.2, 2.0, 6.0));
 
 TEST(Odometry, IncrementsAreAsGoodAsTheySay) {
   double squares = 0, count = 0;
