@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "holdfast/core/step_report.hpp"
-#include "holdfast/filter/map_error.hpp"
+#include "holdfast/filter/matching/map_error.hpp"
 #include "holdfast/registration/normal_equations.hpp"
 
 namespace holdfast::filter {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "holdfast/filter/filter_state.hpp"
-#include "holdfast/filter/scan_match.hpp"
+#include "holdfast/filter/matching/scan_match.hpp"
 
 namespace holdfast::filter {
 

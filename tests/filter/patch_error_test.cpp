@@ -1,4 +1,4 @@
-#include "holdfast/filter/patch_error.hpp"
+#include "holdfast/filter/matching/patch_error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "holdfast/filter/skew_equations.hpp"
+#include "holdfast/filter/matching/skew_equations.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 
 #include "baselines/map_filter.hpp"
 #include "holdfast/estimator/fixed_lag_smoother.hpp"
-#include "holdfast/filter/patch_error.hpp"
-#include "holdfast/filter/scan_match.hpp"
+#include "holdfast/filter/matching/patch_error.hpp"
+#include "holdfast/filter/matching/scan_match.hpp"
 #include "holdfast/pipeline/methods/odometry_witness.hpp"
 #include "holdfast/pipeline/methods/scan_localizer.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "holdfast/filter/map_error.hpp"
+#include "holdfast/filter/matching/map_error.hpp"
 
 namespace holdfast::filter {
 

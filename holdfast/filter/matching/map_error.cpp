@@ -1,4 +1,4 @@
-#include "holdfast/filter/map_error.hpp"
+#include "holdfast/filter/matching/map_error.hpp"
 
 #include <Eigen/Cholesky>
 #include <cmath>

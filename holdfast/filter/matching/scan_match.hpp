@@ -4,7 +4,7 @@
 
 #include "holdfast/core/parallel.hpp"
 #include "holdfast/core/stage_clock.hpp"
-#include "holdfast/filter/map_error.hpp"
+#include "holdfast/filter/matching/map_error.hpp"
 #include "holdfast/preprocess/deskew.hpp"
 #include "holdfast/registration/normal_equations.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "holdfast/filter/skew_equations.hpp"
+#include "holdfast/filter/matching/skew_equations.hpp"
 
 namespace holdfast::filter {
 

@@ -1,4 +1,4 @@
-#include "holdfast/filter/scan_match.hpp"
+#include "holdfast/filter/matching/scan_match.hpp"
 
 #include <algorithm>
 #include <array>
