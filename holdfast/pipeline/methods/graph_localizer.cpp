@@ -136,7 +136,7 @@ void GraphLocalizer::step(const Scan& scan, StageClock& clock, StepReport& repor
       (smoother_.newest().T_map_body.translation - before.T_map_body.translation).norm();
   estimate_map_error(found);
   describe(found, report);
-  compare_with_odometry(found);
+  compare_with_odometry(found, report.pose_covariance);
   judge(found, report);
   imu_.drop_before(scan.end_time - kImuMemory);
 }
@@ -327,9 +327,9 @@ double GraphLocalizer::mapped_share(const SE3& T_map_body) const {
   return asked > 0 ? static_cast<double>(mapped) / asked : 1.0;
 }
 
-void GraphLocalizer::compare_with_odometry(const Match& match) {
+void GraphLocalizer::compare_with_odometry(const Match& match, const filter::Matrix6d& covariance) {
   if (!witness_ || !match.usable) return;
-  witness_->compare({smoother_.newest().T_map_body, pose_covariance()},
+  witness_->compare({smoother_.newest().T_map_body, covariance},
                     match.equations.weight / static_cast<double>(scan_.selected.size()));
 }
 

@@ -104,7 +104,7 @@ class GraphLocalizer : public ScanLocalizer {
   void estimate_map_error(const Match& match);
   filter::Matrix6d pose_covariance() const;
   void describe(const Match& match, StepReport& report) const;
-  void compare_with_odometry(const Match& match);
+  void compare_with_odometry(const Match& match, const filter::Matrix6d& covariance);
   void judge(const Match& match, StepReport& report) const;
 
   Setup setup_;
