@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <utility>
 
 #include "holdfast/filter/account.hpp"
 #include "holdfast/registration/degeneracy.hpp"
@@ -16,6 +17,7 @@ constexpr TimeNs kImuMemory = 2 * kSecond;
 constexpr double kAccelBiasJump = 0.3;  // m/s^2, what a bias may jump by
 constexpr double kGyroBiasJump = 0.03;  // rad/s
 constexpr double kClearlyMore = 1.01;
+constexpr std::size_t kPointsToChoose = 3000;  // that choose among starts
 constexpr double kSkewToldM = 0.04;            // skew that is worth being estimated
 constexpr double kCoarseFromM = 0.1;           // uncertainty from which coarse planes are asked
 constexpr float kCoarseSurfaceSigmaM = 0.05F;  // while coarse planes are matched
@@ -111,6 +113,7 @@ void MapFilter::choose_start(StageClock& clock, StepReport& report) {
   double best_weight = -1;
   FilterState best = state_;
   bool best_rests = false;
+  const filter::SelectedScan all = std::exchange(scan_, filter::thinned(scan_, kPointsToChoose));
   for (const StartCandidate& start : starts_) {
     state_ = start.state;
     predict(report.pose_time, report);
@@ -121,6 +124,7 @@ void MapFilter::choose_start(StageClock& clock, StepReport& report) {
     best = start.state;
     best_rests = start.rests;
   }
+  scan_ = all;
   state_ = best;
   if (best_rests) rest_.begin();
   starts_.clear();

@@ -106,19 +106,6 @@ std::vector<FilterState> pattern(const FilterState& prior, const preprocess::Imu
   return states;
 }
 
-SelectedScan thinned(const SelectedScan& scan, std::size_t most) {
-  SelectedScan few = scan;
-  if (few.selected.size() <= most) return few;
-  for (std::size_t k = 0; k < most; ++k) {
-    // An odd stride over the beams: neighbours in the list are neighbours on the sensor.
-    const std::size_t begin = k * scan.selected.size() / most;
-    const std::size_t end = (k + 1) * scan.selected.size() / most;
-    few.selected[k] = scan.selected[begin + (k * 7) % (end - begin)];
-  }
-  few.selected.resize(most);
-  return few;
-}
-
 /// What stays the same over all candidates.
 struct Search {
   const map::PriorMap& map;

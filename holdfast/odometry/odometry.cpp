@@ -46,7 +46,10 @@ preprocess::ScanSelectionConfig selection_of(const Odometry::Setup& setup) {
 }  // namespace
 
 Odometry::Odometry(const Setup& setup)
-    : setup_(setup), map_(setup.map, setup.range_sigma_m), pool_(setup.threads) {
+    : setup_(setup),
+      map_(setup.map, setup.range_sigma_m),
+      pool_(setup.threads),
+      edge_finder_(setup.range_sigma_m) {
   setup_.selection = selection_of(setup);
   scan_.T_body_lidar = setup.T_body_lidar;
 }
@@ -179,6 +182,16 @@ UpdateResult Odometry::correct(StageClock& clock) {
   return update;
 }
 
+/// Where the planes leave a direction open.
+void Odometry::correct_by_edges(const UpdateResult& update) {
+  if (registration::weak_directions(update.equations, setup_.odometry.weak_sigma_m).empty()) {
+    edge_reference_.clear();
+    return;
+  }
+  find_edges(edges_);
+  edge_reference_.correct(edges_, scan_, gravity_.value(), state_);
+}
+
 /// Squared Mahalanobis distance between the scan's pose and the predicted one.
 double Odometry::surprise(const FilterState& predicted) const {
   const Eigen::Matrix<double, 6, 1> moved = state_.minus(predicted).head<6>();
@@ -252,6 +265,7 @@ void Odometry::track(StageClock& clock, OdometryReport& report) {
     if (surprised > kSurprise && state_.t >= last_surprise_ + kSettle) {
       update = release_biases(update, passage, clock, report);
     }
+    if (update.usable) correct_by_edges(update);
   }
   accept(update, passage, clock, report);
 }

@@ -4,10 +4,11 @@
 
 #include "holdfast/core/step_report.hpp"
 #include "holdfast/filter/rest.hpp"
-#include "holdfast/odometry/first_motion.hpp"
 #include "holdfast/odometry/gravity_estimate.hpp"
 #include "holdfast/odometry/increment.hpp"
 #include "holdfast/odometry/odometry_config.hpp"
+#include "holdfast/odometry/edges/edge_reference.hpp"
+#include "holdfast/odometry/start/first_motion.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 
 namespace holdfast::odometry {
@@ -83,6 +84,9 @@ class Odometry {
   void level(const Scan& scan);
   void wait_for_returns(OdometryReport& report);
   Passage pass(OdometryReport& report);
+  void keep_first_scan();
+  void find_edges(std::vector<SeenEdge>& edges);
+  void allow_for_climb();
   void second_scan(StageClock& clock, OdometryReport& report);
   void track(StageClock& clock, OdometryReport& report);
   filter::Matrix15d predict(TimeNs to, OdometryReport& report);
@@ -91,6 +95,7 @@ class Odometry {
                                   StageClock& clock);
   filter::UpdateResult release_biases(const filter::UpdateResult& update, Passage& passage,
                                       StageClock& clock, OdometryReport& report);
+  void correct_by_edges(const filter::UpdateResult& update);
   double surprise(const filter::FilterState& predicted) const;
   bool contradicted(const filter::UpdateResult& update, double surprise);
   void accept(const filter::UpdateResult& update, const Passage& passage, StageClock& clock,
@@ -111,6 +116,9 @@ class Odometry {
   filter::UpdateWorkspace work_;
   filter::SelectedScan scan_;
   FirstScan first_;
+  EdgeFinder edge_finder_;
+  EdgeReference edge_reference_;
+  std::vector<SeenEdge> edges_;
   filter::FilterState state_;
   Phase phase_ = Phase::kNothing;
   std::uint64_t scan_number_ = 0;

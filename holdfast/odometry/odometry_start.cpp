@@ -12,10 +12,26 @@ using filter::UpdateResult;
 
 constexpr double kAccelerationAtStart = 0.3;  // m/s^2, that levelling takes for gravity
 constexpr double kLongestFirstWayM = 3.0;     // between the first two scans
-constexpr double kFirstSpeedSigma = 0.5;      // m/s, of the way between two scans
-constexpr double kFirstClimbSigma = 0.1;      // likewise upwards
+constexpr double kFirstClimbSigma = 0.1;      // m/s, upwards
 constexpr double kFirstSlope = 0.1;           // of the ground
-constexpr int kLinesAtFirst = 3;              // of a plane, while the motion is not known well
+constexpr double kSkewThatMattersM = 0.002;
+constexpr TimeNs kQuietFor = kSecond / 10;  // readings that are averaged
+constexpr int kLinesAtFirst = 3;            // of a plane, while the motion is not known well
+
+/// Do the measured readings say that the body stands still, or glides evenly?
+bool is_quiet(const preprocess::ImuSegment& imu) {
+  filter::Rest rest;
+  rest.begin();
+  preprocess::ImuSegment part;
+  for (const ImuSample& s : imu.samples) {
+    if (s.t < imu.measured_begin) continue;
+    part.samples.push_back(s);
+    if (s.t - part.samples.front().t < kQuietFor) continue;
+    if (!rest.holds(part)) return false;
+    part.samples.clear();
+  }
+  return true;
+}
 
 void set_sigma(FilterState& state, int offset, double sigma) {
   state.P.diagonal().segment<3>(offset).setConstant(sigma * sigma);
@@ -48,6 +64,7 @@ void Odometry::level(const Scan& scan) {
   set_sigma(state_, FilterState::kV, setup_.fastest_m_s);
   set_sigma(state_, FilterState::kBa, 0.1);
   set_sigma(state_, FilterState::kBg, 0.02);
+  first_.may_rest = is_quiet(segment_);
   gravity_.begin(force, kAccelerationAtStart, setup_.gravity_m_s2, state_);
 }
 
@@ -73,11 +90,34 @@ void Odometry::wait_for_returns(OdometryReport& report) {
   state_.P.block<3, 3>(FilterState::kV, FilterState::kV) = P_v;
   state_.set_biases(biases);
   gravity_.forget_pose();
-  first_.keep(scan_, state_);
+  keep_first_scan();
   last_surprise_ = report.step.pose_time;
   phase_ = Phase::kFirstScan;
   report.step.state = State::kTracking;
   if (!report.broke) report.step.reason = "first scan of a local map";
+}
+
+void Odometry::keep_first_scan() {
+  first_.scan = *scan_.scan;
+  first_.selected = scan_;
+  first_.selected.scan = &first_.scan;
+  first_.state = state_;
+  find_edges(first_.edges);
+  begin_map(first_, Eigen::Vector3d::Zero(), gravity_.value(), map_, work_);
+}
+
+/// Of the newest scan.
+void Odometry::find_edges(std::vector<SeenEdge>& edges) {
+  edge_finder_.find(*scan_.scan, setup_.selection.min_range_m, setup_.selection.max_range_m, edges);
+}
+
+/// The way that was found is level: how fast the robot climbs is to be told by what follows.
+void Odometry::allow_for_climb() {
+  constexpr int kUp = FilterState::kV + 2;
+  const double climb = std::hypot(kFirstClimbSigma, kFirstSlope * state_.v_map.norm());
+  state_.P.row(kUp).setZero();
+  state_.P.col(kUp).setZero();
+  state_.P(kUp, kUp) = climb * climb;
 }
 
 void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
@@ -85,8 +125,11 @@ void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
   FirstMotion motion = FirstMotion::kNone;
   if (!scan_.selected.empty() && dt * setup_.fastest_m_s < kLongestFirstWayM) {
     const LocalPairing pairing(map_, setup_.odometry.parallel_sine, false);
-    motion = find_first_motion(first_, scan_, report.step.pose_time, setup_.fastest_m_s,
-                               gravity_.value(), options(), pairing, pool_, map_, work_);
+    const filter::UpdateOptions how = options();
+    find_edges(edges_);
+    motion =
+        find_first_motion(first_, scan_, report.step.pose_time, edges_, dt * setup_.fastest_m_s,
+                          gravity_.value(), {how, pairing, pool_, map_, work_});
   }
   clock.book(Stage::kStart);
   if (motion == FirstMotion::kNone) {
@@ -96,18 +139,19 @@ void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
   }
   const bool rests = motion == FirstMotion::kRests && epoch_ == 0;
   if (rests) rest_.begin();
-  map_.set_least_lines(rests ? kLinesOfAPlane : kLinesAtFirst);
-  begin_map(first_, gravity_.value(), map_, work_);
+  if (!rests) {
+    map_.set_least_lines(kLinesAtFirst);
+    begin_map(first_, first_.state.v_map, gravity_.value(), map_, work_);
+  }
   state_ = first_.state;
-  set_sigma(state_, FilterState::kV, kFirstSpeedSigma);
-  const double climb = std::hypot(kFirstClimbSigma, kFirstSlope * state_.v_map.norm());
-  state_.P(FilterState::kV + 2, FilterState::kV + 2) = climb * climb;
+  allow_for_climb();
   const Passage passage = pass(report);
   UpdateResult update = correct(clock);
-  if (update.usable) {
+  const Eigen::Vector3d faster = state_.v_map - passage.predicted.v_map;
+  if (update.usable && dt * faster.norm() > kSkewThatMattersM) {
     // Once more with the better velocity, which moved the points of both scans.
-    first_.state.v_map += state_.v_map - passage.predicted.v_map;
-    begin_map(first_, gravity_.value(), map_, work_);
+    first_.state.v_map += faster;
+    begin_map(first_, first_.state.v_map, gravity_.value(), map_, work_);
     update = correct_at(0, passage.predicted, clock);
   }
   phase_ = Phase::kRunning;

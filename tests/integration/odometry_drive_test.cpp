@@ -126,11 +126,16 @@ fs::path data_folder() {
 /// A street at 11 m/s, already at speed at the start. The truth of this recording moves sideways
 /// and upwards by corrections that no car makes (177 jumps of up to 15 mm within 10 ms, 0.5 m to
 /// the right and 0.3 m up in all), so that only the way along the road judges the odometry.
-TEST(KittiDrive, TheWayAlongTheRoadIsKnownToATenthOfAPercent) {
+class KittiDrive : public ::testing::TestWithParam<int> {};
+
+/// Whichever points are taken: the planes of a street hardly tell the way along it, and with edges
+/// left out it was known to 0.02 % with 6000 points, by luck, and not at all with 6500.
+TEST_P(KittiDrive, TheWayAlongTheRoadIsKnownToOnePercent) {
   const fs::path folder = data_folder() / "kitti_0009";
   if (!fs::exists(folder)) GTEST_SKIP() << "no recording in " << folder;
   const auto truth = valid(io::read_tum(folder / "truth.tum"));
   pipeline::Config config;
+  config.odometry.max_points = GetParam();
   std::ifstream file(folder / "extrinsics.txt");
   std::string comment;
   std::getline(file, comment);
@@ -143,8 +148,10 @@ TEST(KittiDrive, TheWayAlongTheRoadIsKnownToATenthOfAPercent) {
   const evaluation::TruthTrack track(truth);
   const Driven driven = drive(*log, config, [&](TimeNs t) { return track.at(t).T_map_body; });
   EXPECT_EQ(driven.breaks, 0);
-  EXPECT_LT(driven.drift(50).x(), 0.001);
+  EXPECT_LT(driven.drift(50).x(), 0.01);
 }
+
+INSTANTIATE_TEST_SUITE_P(Points, KittiDrive, ::testing::Values(2500, 4000, 6000, 6500, 8000));
 
 }  // namespace
 }  // namespace holdfast::odometry

@@ -31,6 +31,19 @@ void ScanMatch::book(Stage stage) {
   if (clock_ != nullptr) clock_->book(stage);
 }
 
+SelectedScan thinned(const SelectedScan& scan, std::size_t most) {
+  SelectedScan few = scan;
+  if (few.selected.size() <= most) return few;
+  for (std::size_t k = 0; k < most; ++k) {
+    // An odd stride over the beams: neighbours in the list are neighbours on the sensor.
+    const std::size_t begin = k * scan.selected.size() / most;
+    const std::size_t end = (k + 1) * scan.selected.size() / most;
+    few.selected[k] = scan.selected[begin + (k * 7) % (end - begin)];
+  }
+  few.selected.resize(most);
+  return few;
+}
+
 void deskew_scan(const SelectedScan& scan, const MatchState& x, UpdateWorkspace& work) {
   const Scan& s = *scan.scan;
   const Eigen::Quaterniond R_body_map = x.T_map_body.rotation.conjugate();

@@ -18,6 +18,9 @@ struct SelectedScan {
   SE3 T_body_lidar;
 };
 
+/// The same scan with at most `most` points, spread evenly over those selected.
+SelectedScan thinned(const SelectedScan& scan, std::size_t most);
+
 /// How one pass over a scan is done.
 struct UpdateOptions {
   registration::AssociationOptions association;
