@@ -24,6 +24,7 @@ constexpr double kOutlierSq = 12.0;     // a point 3.5 sigma off its own window 
 constexpr double kSideCosineSq = 0.09;  // a side of an edge is seen within 73 degrees
 constexpr double kFaceCosineSq = 0.25;  // a face that ends in a border is seen within 60 degrees
 
+constexpr float kUniformSigma = 0.29F;  // of an even distribution over 1
 constexpr double kCurveGain = 12.0;  // sum of squares, in variances, that decides for a shape
 constexpr double kTipShare = 1.0;    // squared, of a point that may be a tip
 constexpr double kBentSides = 9.0;   // likewise, that speaks against straight sides
@@ -297,9 +298,16 @@ void RowFitter::add_border(const Segment& segment, bool at_end, std::vector<RowE
   if (off * off > kOutlierSq * variance) return;
   const Bend bent = bend(std::min(first, last), std::max(first, last) + 1, face);
   if (bent.line - bent.curve > kCurveGain * variance) return;
-  const auto spacing = (rows_->points[inward(1)] - p).norm();
-  edges.push_back({last, p * static_cast<float>(face.normal().dot(face.mean) / along),
-                   std::max(static_cast<float>(2.0 * std::sqrt(variance / face.n)), spacing)});
+  // The face ends somewhere before the next ray: half a spacing on, give or take its deviation.
+  const float scale = static_cast<float>(face.normal().dot(face.mean) / along);
+  const Vector2f out = (at_end ? face.tangent : -face.tangent).cast<float>();
+  const float spacing =
+      std::abs(out.dot((rows_->points[inward(1)] - p).head<2>())) + 1e-6F;
+  Vector3f position = p * scale;
+  position.head<2>() += 0.5F * spacing * out;
+  const float quantised = kUniformSigma * spacing;
+  edges.push_back({last, position,
+                   std::hypot(static_cast<float>(2.0 * std::sqrt(variance / face.n)), quantised)});
 }
 
 void RowFitter::fit_segment(const Segment& segment, std::vector<WindowFit>& fits,

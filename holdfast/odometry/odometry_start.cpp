@@ -14,6 +14,7 @@ constexpr double kAccelerationAtStart = 0.3;  // m/s^2, that levelling takes for
 constexpr double kLongestFirstWayM = 3.0;     // between the first two scans
 constexpr double kFirstClimbSigma = 0.1;      // m/s, upwards
 constexpr double kFirstSlope = 0.1;           // of the ground
+constexpr int kPointsOfFirstMap = 12000;
 constexpr double kSkewThatMattersM = 0.002;
 constexpr TimeNs kQuietFor = kSecond / 10;  // readings that are averaged
 constexpr int kLinesAtFirst = 3;            // of a plane, while the motion is not known well
@@ -101,6 +102,10 @@ void Odometry::keep_first_scan() {
   first_.scan = *scan_.scan;
   first_.selected = scan_;
   first_.selected.scan = &first_.scan;
+  // With all that it saw: nothing else will stand in the map for a while.
+  preprocess::ScanSelectionConfig many = setup_.selection;
+  many.max_points = std::max(many.max_points, kPointsOfFirstMap);
+  preprocess::select_points(first_.scan, many, scan_number_, first_.selected.selected);
   first_.state = state_;
   find_edges(first_.edges);
   begin_map(first_, Eigen::Vector3d::Zero(), gravity_.value(), map_, work_);
@@ -154,6 +159,8 @@ void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
     begin_map(first_, first_.state.v_map, gravity_.value(), map_, work_);
     update = correct_at(0, passage.predicted, clock);
   }
+  edge_reference_.clear();
+  if (update.usable) edge_reference_.correct(edges_, scan_, gravity_.value(), state_);
   phase_ = Phase::kRunning;
   last_keyframe_ = passage.before.T_map_body;
   accept(update, passage, clock, report);

@@ -27,11 +27,14 @@ void EdgeReference::correct(const std::vector<SeenEdge>& edges, const filter::Se
     const EdgeWays ways(edges_, put);
     const Vector3d predicted = state.T_map_body.translation - p_odom_;
     const Matrix3d P = state.P.topLeftCorner<3, 3>();
+    // All scans that meet one reference share its errors: the later ones tell less that is new.
+    const double part = 1.0 / ++scans_;
     Vector3d way = predicted;
     Matrix3d information = Matrix3d::Zero();
     for (int i = 0; i < kIterations; ++i) {
       const EdgeWays::Fit fit = ways.fit(way);
       const Matrix3d share =
+          part *
           (Matrix3d::Identity() + kCommonSigmaM * kCommonSigmaM * fit.H).inverse();
       information = share * fit.H;
       // (P^-1 + H) d = -(P^-1 (way - predicted) + g), without inverting P.
@@ -53,6 +56,7 @@ void EdgeReference::correct(const std::vector<SeenEdge>& edges, const filter::Se
   }
   if (known >= kLeastShare * static_cast<double>(put.size()) && known >= kLeastWeight) return;
   edges_ = std::move(put);
+  scans_ = 0;
   p_odom_ = state.T_map_body.translation;
 }
 

@@ -27,7 +27,7 @@ constexpr std::size_t kVotedWays = 3;  // by edges
 constexpr double kSameWayM = 0.1;      // where a way leads to another
 constexpr double kBetter = 40.0;       // squared sigmas by which a faster motion must explain more
 constexpr double kNothing = 1e12;      // cost of what cannot be matched
-constexpr double kLeastShare = 0.15;   // of the points that must agree
+constexpr double kLeastShare = 0.1;    // of the points that must agree
 constexpr int kRefinements = 2;        // with scans that are moved by what was found
 constexpr double kHardBraking = 3.0;   // m/s^2
 
