@@ -25,9 +25,9 @@ constexpr double kSideCosineSq = 0.09;  // a side of an edge is seen within 73 d
 constexpr double kFaceCosineSq = 0.25;  // a face that ends in a border is seen within 60 degrees
 
 constexpr float kUniformSigma = 0.29F;  // of an even distribution over 1
-constexpr double kCurveGain = 12.0;  // sum of squares, in variances, that decides for a shape
-constexpr double kTipShare = 1.0;    // squared, of a point that may be a tip
-constexpr double kBentSides = 9.0;   // likewise, that speaks against straight sides
+constexpr double kCurveGain = 12.0;     // sum of squares, in variances, that decides for a shape
+constexpr double kTipShare = 1.0;       // squared, of a point that may be a tip
+constexpr double kBentSides = 9.0;      // likewise, that speaks against straight sides
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -301,8 +301,7 @@ void RowFitter::add_border(const Segment& segment, bool at_end, std::vector<RowE
   // The face ends somewhere before the next ray: half a spacing on, give or take its deviation.
   const float scale = static_cast<float>(face.normal().dot(face.mean) / along);
   const Vector2f out = (at_end ? face.tangent : -face.tangent).cast<float>();
-  const float spacing =
-      std::abs(out.dot((rows_->points[inward(1)] - p).head<2>())) + 1e-6F;
+  const float spacing = std::abs(out.dot((rows_->points[inward(1)] - p).head<2>())) + 1e-6F;
   Vector3f position = p * scale;
   position.head<2>() += 0.5F * spacing * out;
   const float quantised = kUniformSigma * spacing;

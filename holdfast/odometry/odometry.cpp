@@ -40,6 +40,7 @@ constexpr int kSettledKeyframes = 10;       // from which it is
 preprocess::ScanSelectionConfig selection_of(const Odometry::Setup& setup) {
   preprocess::ScanSelectionConfig selection = setup.selection;
   selection.max_points = std::min(selection.max_points, setup.odometry.max_points);
+  selection.least_share = 0;
   return selection;
 }
 

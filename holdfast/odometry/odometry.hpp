@@ -4,10 +4,10 @@
 
 #include "holdfast/core/step_report.hpp"
 #include "holdfast/filter/rest.hpp"
+#include "holdfast/odometry/edges/edge_reference.hpp"
 #include "holdfast/odometry/gravity_estimate.hpp"
 #include "holdfast/odometry/increment.hpp"
 #include "holdfast/odometry/odometry_config.hpp"
-#include "holdfast/odometry/edges/edge_reference.hpp"
 #include "holdfast/odometry/start/first_motion.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 

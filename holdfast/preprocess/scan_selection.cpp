@@ -40,7 +40,8 @@ std::size_t select_points(const Scan& scan, const ScanSelectionConfig& config,
     count += static_cast<std::size_t>((range_sq >= low) & (range_sq <= high));
   }
   out.resize(count);
-  const auto most = static_cast<std::size_t>(std::max(config.max_points, 1));
+  const auto share = static_cast<std::size_t>(config.least_share * static_cast<double>(count));
+  const auto most = std::max(static_cast<std::size_t>(std::max(config.max_points, 1)), share);
   if (count > most) thin(out, most, scan_number);
   return count;
 }

@@ -12,6 +12,7 @@ struct ScanSelectionConfig {
   double min_range_m = 0.7;
   double max_range_m = 150.0;
   int max_points = 8000;
+  double least_share = 0.25;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -21,13 +22,18 @@ struct ScanSelectionConfig {
     visit("max_points", self.max_points,
           FieldDoc{"points of a scan that are matched with the map, spread over the whole scan",
                    100, 1000000});
+    visit("least_share", self.least_share,
+          FieldDoc{"share of a scan's points that are matched though they be more than max_points: "
+                   "a sensor of many beams costs more and tells more",
+                   0.0, 1.0});
   }
 };
 
 /// Chooses the points of a scan to work with: indices in ascending order into `scan.points`. Where
-/// there are more than `max_points`, one of each run of neighbours is taken at a place drawn anew
-/// for each run and `scan_number` (same number, same choice), so that no beam of a regular pattern
-/// is favoured. Returns the number of points inside the limits of range. `out` keeps its memory.
+/// there are more than `max_points` and the least share allow, one of each run of neighbours is
+/// taken at a place drawn anew for each run and `scan_number` (same number, same choice), so that
+/// no beam of a regular pattern is favoured. Returns the number of points inside the limits of
+/// range. `out` keeps its memory.
 std::size_t select_points(const Scan& scan, const ScanSelectionConfig& config,
                           std::uint64_t scan_number, std::vector<std::uint32_t>& out);
 

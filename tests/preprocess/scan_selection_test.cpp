@@ -44,7 +44,18 @@ Scan points_at(const std::vector<float>& ranges) {
 ScanSelectionConfig most(int points) {
   ScanSelectionConfig config;
   config.max_points = points;
+  config.least_share = 0;
   return config;
+}
+
+TEST(SelectPoints, ALeastShareOfALargeScanIsTakenThoughItBeMoreThanTheMost) {
+  ScanSelectionConfig config = most(100);
+  config.least_share = 0.25;
+  std::vector<std::uint32_t> selected;
+  EXPECT_EQ(select_points(points_at(std::vector<float>(1000, 5.0F)), config, 0, selected), 1000U);
+  EXPECT_EQ(selected.size(), 250U);
+  select_points(points_at(std::vector<float>(200, 5.0F)), config, 0, selected);
+  EXPECT_EQ(selected.size(), 100U);
 }
 
 TEST(SelectPoints, KeepsExactlyWhatLiesWithinTheLimitsOfRange) {

@@ -24,7 +24,6 @@ class EdgeReference {
  private:
   std::vector<EdgePoint> edges_;  ///< in the odometry's axes, from where the body was
   Eigen::Vector3d p_odom_ = Eigen::Vector3d::Zero();  ///< where it was
-  int scans_ = 0;  ///< that were held against it
 };
 
 }  // namespace holdfast::odometry
