@@ -85,10 +85,12 @@ double cell_for(double spacing, double noise) {
 }
 
 /// Thickness of planes, over a spread sample of the cells of a few tiles: the median over the
-/// flatter half, so that foliage does not count.
+/// flatter half, so that foliage does not count. A sample of n points scatters about its true
+/// thickness by 1 / sqrt(2 (n - 3)) of it, and the lower quartile lies 0.67 of that below.
 double estimate_noise(const LocalCloud& local, double cell_m) {
   constexpr double kLeast = 0.003;
   constexpr double kMost = 0.08;
+  constexpr double kQuartile = 0.674;  // of a normal distribution, in standard deviations
   const std::size_t step = std::max<std::size_t>(1, local.buckets.size() / 8);
   FitOptions narrow;
   narrow.wide_radius = narrow.narrow_radius;
@@ -101,8 +103,9 @@ double estimate_noise(const LocalCloud& local, double cell_m) {
     const auto& cells = grid.occupied();
     const std::size_t cell_step = std::max<std::size_t>(1, cells.size() / 200);
     for (std::size_t i = 0; i < cells.size(); i += cell_step) {
-      const double sigma = plane_thickness(grid, cells[i], narrow);
-      if (sigma >= 0) thickness.push_back(sigma);
+      const auto [sigma, support] = plane_thickness(grid, cells[i], narrow);
+      if (support > 0)
+        thickness.push_back(sigma / (1.0 - kQuartile / std::sqrt(2.0 * (support - 3))));
     }
   }
   if (thickness.empty()) return kMost;

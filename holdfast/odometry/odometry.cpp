@@ -185,7 +185,8 @@ UpdateResult Odometry::correct(StageClock& clock) {
 
 /// Where the planes leave a direction open.
 void Odometry::correct_by_edges(const UpdateResult& update) {
-  if (registration::weak_directions(update.equations, setup_.odometry.weak_sigma_m).empty()) {
+  if (!edges_on_ ||
+      registration::weak_directions(update.equations, setup_.odometry.weak_sigma_m).empty()) {
     edge_reference_.clear();
     return;
   }

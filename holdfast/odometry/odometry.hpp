@@ -59,6 +59,9 @@ class Odometry {
   /// not, the last reading is held and the report says for how long.
   OdometryReport add_scan(const Scan& scan);
 
+  /// Whether edges tell the way where planes do not, at the price of 2 ms a scan there. On at first.
+  void use_edges(bool on) { edges_on_ = on; }
+
   const filter::FilterState& state() const { return state_; }
   /// In the odometry's frame, m/s^2; along -z but for the error of the first levelling.
   const Eigen::Vector3d& gravity() const { return gravity_.value(); }
@@ -118,6 +121,7 @@ class Odometry {
   FirstScan first_;
   EdgeFinder edge_finder_;
   EdgeReference edge_reference_;
+  bool edges_on_ = true;
   std::vector<SeenEdge> edges_;
   filter::FilterState state_;
   Phase phase_ = Phase::kNothing;

@@ -368,11 +368,11 @@ TEST(PlaneThickness, IsTheNoiseOfAWallAndNegativeForAFewPoints) {
   const PointGrid grid(points, kCell);
   std::vector<double> thickness;
   for (const Cell& cell : grid.occupied()) {
-    thickness.push_back(plane_thickness(grid, cell, FitOptions{}));
+    thickness.push_back(plane_thickness(grid, cell, FitOptions{}).sigma_m);
   }
   EXPECT_NEAR(mean(thickness), kNoise, 0.1 * kNoise);
   const PointGrid few(Points(3, {0.1F, 0.1F, 0.1F}), kCell);
-  EXPECT_LT(plane_thickness(few, Cell(0, 0, 0), FitOptions{}), 0);
+  EXPECT_EQ(plane_thickness(few, Cell(0, 0, 0), FitOptions{}).support, 0);
 }
 
 }  // namespace

@@ -348,12 +348,12 @@ void fit_cell(const PointGrid& grid, const Cell& cell, const FitOptions& options
   for (std::size_t i = first; i + 1 < out.size(); ++i) out[i].more = 1;
 }
 
-double plane_thickness(const PointGrid& grid, const Cell& cell, const FitOptions& options) {
+Thickness plane_thickness(const PointGrid& grid, const Cell& cell, const FitOptions& options) {
   const Neighbourhood n = gather(grid, cell, options);
   Moments m;
   for (const auto& d : n.all) m.add(d);
   const auto plane = plane_through(m, 2 * options.min_support);
-  return plane ? plane->sigma_m : -1.0;
+  return plane ? Thickness{plane->sigma_m, plane->support} : Thickness{};
 }
 
 }  // namespace holdfast::map

@@ -26,8 +26,14 @@ struct FitOptions {
 void fit_cell(const PointGrid& grid, const Cell& cell, const FitOptions& options,
               std::vector<Surface>& out);
 
-/// RMS distance to the plane fitted to the wide neighbourhood of `cell`; < 0 where there are too
-/// few points. For the estimate of a map's noise.
-double plane_thickness(const PointGrid& grid, const Cell& cell, const FitOptions& options);
+/// RMS distance of `support` points to the plane fitted to them, without bias; 0 points where they
+/// are too few.
+struct Thickness {
+  double sigma_m = 0;
+  int support = 0;
+};
+
+/// Of the wide neighbourhood of `cell`. For the estimate of a map's noise.
+Thickness plane_thickness(const PointGrid& grid, const Cell& cell, const FitOptions& options);
 
 }  // namespace holdfast::map

@@ -310,6 +310,7 @@ void GraphLocalizer::carry_on_by_odometry(Match& match) {
   if (pairs < kMostlyMapped) match.mapped_share = mapped_share(smoother_.newest().T_map_body);
   const bool linked = last_mapped_share_ < kMostlyMapped;
   last_mapped_share_ = match.mapped_share;
+  witness_->set_alone(last_mapped_share_ < kMostlyMapped);
   if (match.usable || linked || !motion_) return;
   smoother_.link_newest(*motion_);
   smoother_.optimise([](const NodeState&) { return std::nullopt; });

@@ -18,10 +18,15 @@ struct MappedPose {
 /// whether the map's account of the last seconds can be true. It takes nothing from the map.
 class OdometryWitness {
  public:
-  explicit OdometryWitness(const odometry::Odometry::Setup& setup) : odometry_(setup) {}
+  explicit OdometryWitness(const odometry::Odometry::Setup& setup) : odometry_(setup) {
+    set_alone(false);
+  }
 
   void add_imu(const ImuSample& sample) { odometry_.add_imu(sample); }
   void add_scan(const Scan& scan);
+
+  /// Beside a map that tells the pose, a witness is worth less than what edges cost.
+  void set_alone(bool alone) { odometry_.use_edges(alone); }
 
   /// The motion since the last call as a constraint of two nodes; none where the odometry broke, or
   /// was without returns that it could use, in between. Wider than the odometry says, because it
