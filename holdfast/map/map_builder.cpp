@@ -84,17 +84,23 @@ double cell_for(double spacing, double noise) {
   return cell;
 }
 
+/// Noise of a map's points.
+struct MapNoise {
+  double thin_m;   ///< thickness of the thinner planes: what fits take for one plane
+  double sigma_m;  ///< standard deviation that this thickness tells of
+};
+
 /// Thickness of planes, over a spread sample of the cells of a few tiles: the median over the
 /// flatter half, so that foliage does not count. A sample of n points scatters about its true
 /// thickness by 1 / sqrt(2 (n - 3)) of it, and the lower quartile lies 0.67 of that below.
-double estimate_noise(const LocalCloud& local, double cell_m) {
+MapNoise estimate_noise(const LocalCloud& local, double cell_m) {
   constexpr double kLeast = 0.003;
   constexpr double kMost = 0.08;
   constexpr double kQuartile = 0.674;  // of a normal distribution, in standard deviations
   const std::size_t step = std::max<std::size_t>(1, local.buckets.size() / 8);
   FitOptions narrow;
   narrow.wide_radius = narrow.narrow_radius;
-  std::vector<double> thickness;
+  std::vector<double> thickness, sigmas;
   std::size_t number = 0;
   for (const auto& [key, indices] : local.buckets) {
     if (number++ % step != 0) continue;
@@ -104,13 +110,17 @@ double estimate_noise(const LocalCloud& local, double cell_m) {
     const std::size_t cell_step = std::max<std::size_t>(1, cells.size() / 200);
     for (std::size_t i = 0; i < cells.size(); i += cell_step) {
       const auto [sigma, support] = plane_thickness(grid, cells[i], narrow);
-      if (support > 0)
-        thickness.push_back(sigma / (1.0 - kQuartile / std::sqrt(2.0 * (support - 3))));
+      if (support <= 0) continue;
+      thickness.push_back(sigma);
+      sigmas.push_back(sigma / (1.0 - kQuartile / std::sqrt(2.0 * (support - 3))));
     }
   }
-  if (thickness.empty()) return kMost;
-  std::sort(thickness.begin(), thickness.end());
-  return std::clamp(thickness[thickness.size() / 4], kLeast, kMost);
+  const auto quartile = [&](std::vector<double>& values) {
+    if (values.empty()) return kMost;
+    std::sort(values.begin(), values.end());
+    return std::clamp(values[values.size() / 4], kLeast, kMost);
+  };
+  return {quartile(thickness), quartile(sigmas)};
 }
 
 Status write_bytes(const std::filesystem::path& path, const void* data, std::size_t bytes) {
@@ -126,6 +136,7 @@ struct Job {
   LocalCloud cloud;
   std::optional<LocalCloud> edges;
   std::vector<TileKey> tiles;
+  MapNoise noise{};
   double cell_m = 0;
   FitOptions fit;
   std::filesystem::path dir;
@@ -228,7 +239,8 @@ Job plan(const MapSource& source, const MapInfo& info, const std::filesystem::pa
   Job job;
   job.cloud = sort_into_tiles(source.cloud, info.origin);
   if (source.edges) job.edges = sort_into_tiles(*source.edges, info.origin);
-  job.fit.noise_m = estimate_noise(job.cloud, cell_for(info.spacing_m, 0.0));
+  job.noise = estimate_noise(job.cloud, cell_for(info.spacing_m, 0.0));
+  job.fit.noise_m = job.noise.thin_m;
   job.cell_m = cell_for(info.spacing_m, job.fit.noise_m);
   job.dir = dir;
   for (const auto& [key, indices] : job.cloud.buckets) job.tiles.push_back(key);
@@ -242,7 +254,7 @@ Job plan(const MapSource& source, const MapInfo& info, const std::filesystem::pa
 }
 
 Status collect(const Job& job, const std::vector<TileResult>& results, MapInfo& info) {
-  info.noise_m = job.fit.noise_m;
+  info.noise_m = job.noise.sigma_m;
   for (int i = 0; i < kLevels; ++i) info.levels[i].cell_m = job.cell_m * (1 << i);
   for (const TileResult& result : results) {
     if (!result.status.ok()) return result.status.error();

@@ -59,7 +59,8 @@ class Odometry {
   /// not, the last reading is held and the report says for how long.
   OdometryReport add_scan(const Scan& scan);
 
-  /// Whether edges tell the way where planes do not, at the price of 2 ms a scan there. On at first.
+  /// Whether edges tell the way where planes do not, at the price of 2 ms a scan there: at first
+  /// they do.
   void use_edges(bool on) { edges_on_ = on; }
 
   const filter::FilterState& state() const { return state_; }

@@ -19,7 +19,7 @@ constexpr double kCommonSigmaM = 0.01;  // error that all edges of a scan have i
 // other.
 constexpr double kAlike = 10;
 constexpr double kLeastShare = 0.25;  // of the edges that a reference has to know
-constexpr double kLeastWeight = 8;   // edges that must agree
+constexpr double kLeastWeight = 8;    // edges that must agree
 constexpr int kIterations = 3;
 
 /// What edges say about a position.

@@ -17,7 +17,7 @@ namespace holdfast::pipeline {
 /// What the graph adds to the settings of `map_filter`, with which it shares the matching.
 struct GraphConfig {
   double gravity_sigma_m_s2 = 0.05;
-  double map_error_share = 0.02;
+  double map_error_share = 0.04;
   double patch_error_share = 1.0;
   double map_correlation_m = 0.5;
   double surprise = 40.0;
