@@ -71,7 +71,7 @@ class MapFilter {
 
   const FilterState& state() const { return state_; }
   /// Is the robot held at rest, until its IMU feels a start?
-  bool rests() const { return rest_.holds_now(); }
+  bool rests() const { return rest_.is_assumed(); }
   const map::PriorMap& map() const { return map_; }
   /// The map, for whoever goes on from here.
   map::PriorMap take_map() && { return std::move(map_); }

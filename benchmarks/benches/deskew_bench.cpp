@@ -79,7 +79,7 @@ class DeskewJudge {
  public:
   DeskewJudge(const SurveyedDrive& drive, map::PriorMap map, DriveResult& result)
       : drive_(*drive.simulation),
-        filter_(std::move(map), filter_setup(drive.config), drive.initial_pose),
+        filter_(std::move(map), pipeline::filter_setup(drive.config), drive.initial_pose),
         result_(result) {}
 
   Status run() {

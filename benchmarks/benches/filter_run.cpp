@@ -51,22 +51,10 @@ class Repeater {
 
 }  // namespace
 
-MapFilter::Setup filter_setup(const pipeline::Config& config) {
-  MapFilter::Setup setup;
-  setup.filter = config.map_filter;
-  setup.imu = config.imu;
-  setup.selection = config.preprocess;
-  setup.start = {config.start.position_m, config.start.rotation_deg * std::numbers::pi / 180.0,
-                 config.start.speed_m_s};
-  setup.range_sigma_m = config.lidar.range_sigma_m;
-  setup.T_body_lidar = config.T_body_lidar;
-  return setup;
-}
-
 Result<std::vector<FilteredScan>> run_filter(SensorSource& log, const SurveyedDrive& drive) {
   auto map = map::PriorMap::open(drive.map_dir);
   if (!map) return map.error();
-  const MapFilter::Setup setup = filter_setup(drive.config);
+  const MapFilter::Setup setup = pipeline::filter_setup(drive.config);
   MapFilter filter(std::move(*map), setup, drive.initial_pose);
   Repeater repeater(filter, setup);
   std::vector<FilteredScan> scans;

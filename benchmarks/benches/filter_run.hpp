@@ -6,6 +6,7 @@
 #include "benchmarks/drives/surveyed_drive.hpp"
 #include "benchmarks/yardsticks/kd_tree_registration.hpp"
 #include "holdfast/core/step_report.hpp"
+#include "holdfast/pipeline/methods/map_filter_method.hpp"
 
 namespace holdfast::benchmarks {
 
@@ -19,10 +20,6 @@ struct FilteredScan {
   RegistrationStart
       predicted;  ///< of the pose at the last point, with the prediction's information
 };
-
-/// map_filter's share of a configuration, as pipeline::Localizer takes it out; a test compares the
-/// poses.
-baselines::MapFilter::Setup filter_setup(const pipeline::Config& config);
 
 /// Runs map_filter over a log, with one thread, and keeps what it predicted for each scan. The
 /// poses are those of `pipeline::Localizer`, bit for bit.

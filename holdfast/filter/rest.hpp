@@ -11,7 +11,7 @@ class Rest {
  public:
   void begin() { rests_ = true; }
   void end() { rests_ = false; }
-  bool holds_now() const { return rests_; }
+  bool is_assumed() const { return rests_; }
 
   /// Compares the readings of a scan (body frame) with those so far. A start is felt from
   /// 0.05 m/s^2 or 0.01 rad/s on.

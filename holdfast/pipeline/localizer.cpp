@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
-#include "baselines/map_filter.hpp"
 #include "holdfast/pipeline/methods/feature_selection.hpp"
 #include "holdfast/pipeline/methods/graph_localizer.hpp"
+#include "holdfast/pipeline/methods/map_filter_method.hpp"
 #include "holdfast/pipeline/methods/odometry_run.hpp"
 #include "holdfast/pipeline/methods/query_matching.hpp"
 
@@ -14,33 +12,6 @@ namespace holdfast::pipeline {
 namespace {
 
 constexpr double kStartRadiusM = 150.0;
-
-/// The baseline as a method.
-class MapFilterMethod : public ScanLocalizer {
- public:
-  MapFilterMethod(map::PriorMap map, const baselines::MapFilter::Setup& setup,
-                  const SE3& T_map_body)
-      : filter_(std::move(map), setup, T_map_body) {}
-
-  void add_imu(const ImuSample& sample) override { filter_.add_imu(sample); }
-  StepReport add_scan(const Scan& scan) override { return filter_.add_scan(scan); }
-
- private:
-  baselines::MapFilter filter_;
-};
-
-baselines::MapFilter::Setup filter_setup(const Config& config, int threads) {
-  baselines::MapFilter::Setup setup;
-  setup.filter = config.map_filter;
-  setup.imu = config.imu;
-  setup.selection = config.preprocess;
-  setup.start = {config.start.position_m, config.start.rotation_deg * std::numbers::pi / 180.0,
-                 config.start.speed_m_s};
-  setup.range_sigma_m = config.lidar.range_sigma_m;
-  setup.T_body_lidar = config.T_body_lidar;
-  setup.threads = threads;
-  return setup;
-}
 
 features::FeatureConfig feature_config(const Config& config) {
   features::FeatureConfig features = config.feature_extraction;

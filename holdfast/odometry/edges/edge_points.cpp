@@ -30,7 +30,7 @@ void EdgeFinder::find(const Scan& scan, double min_range_m, double max_range_m,
     const float range = q.norm();
     if (range < low || range > high) continue;
     points_.push_back(q);
-    if (scan.has_ring) rings_.push_back(p.ring);
+    if (scan.has_ring) rings_.push_back(p.ring / step);  // neighbours again
     source_.push_back(i);
   }
   extractor_.extract(points_, rings_, features_);
