@@ -18,7 +18,7 @@ constexpr std::array<BenchInfo, 9> kBenches = {{
     {"step",
      "time of a step, beside a k-d-tree registration and plain reading of the log",
      {1, 1},
-     20,
+     60,
      measure_step},
     {"accuracy",
      "errors over worlds and seeds in surveyed maps",

@@ -1,11 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <vector>
 
 #include "holdfast/pipeline/event_sequencer.hpp"
 #include "holdfast/pipeline/methods/odometry_run.hpp"
-#include "simulation/simulation.hpp"
+#include "tests/integration/drive_in_map.hpp"
 
 /// Logs that begin in the middle of a drive.
 namespace holdfast::odometry {
@@ -14,12 +13,7 @@ namespace {
 constexpr int kScans = 11;  // a second
 constexpr std::size_t kImuBefore = 60;
 
-template <class T>
-T valid(Result<T> result) {
-  if (result) return std::move(*result);
-  ADD_FAILURE() << result.error().message;
-  std::abort();
-}
+using holdfast::testing::valid;
 
 /// The events of a simulated drive, in order.
 struct Recording {
