@@ -187,10 +187,8 @@ constexpr const char* kTimesNote =
     "Thread CPU time. A step is all of the default localizer's work on one scan but the first, "
     "with the odometry beside it, whose own start on one of the next scans is the maximum; "
     "map_filter has neither window nor odometry; the k-d tree's time is its registration alone, "
-    "given "
-    "map_filter's prediction and deskewed points; reading is the decoding of a scan and of the IMU "
-    "readings "
-    "before it from a bag.\n";
+    "given map_filter's prediction and deskewed points; reading is the decoding of a scan and of "
+    "the IMU readings before it from a bag.\n";
 constexpr const char* kSharesNote =
     "Shares of the step by stage; scans in TRACKING or DEGRADED; position errors. The k-d tree's "
     "is "

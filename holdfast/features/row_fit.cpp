@@ -301,7 +301,7 @@ void RowFitter::add_border(const Segment& segment, bool at_end, std::vector<RowE
   // The face ends somewhere before the next ray: half a spacing on, give or take its deviation.
   const float scale = static_cast<float>(face.normal().dot(face.mean) / along);
   const Vector2f out = (at_end ? face.tangent : -face.tangent).cast<float>();
-  const float spacing = std::abs(out.dot((rows_->points[inward(1)] - p).head<2>())) + 1e-6F;
+  const float spacing = std::abs(out.dot((rows_->points[inward(1)] - p).head<2>()));
   Vector3f position = p * scale;
   position.head<2>() += 0.5F * spacing * out;
   const float quantised = kUniformSigma * spacing;

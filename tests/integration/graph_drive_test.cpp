@@ -58,6 +58,27 @@ TEST(AGraphDrive, IsWhereItSaysFromTheFirstClaimOnInATunnel) {
   EXPECT_GE(claims, 15U);
 }
 
+/// Along its axis a tunnel tells little, but nothing is claimed beyond what is known; where that is
+/// bad, the axis is named.
+TEST(AGraphDrive, IsNeverBeyondThreeSigmasInATunnel) {
+  simulation::SimulationOptions options = drive_of("tunnel");
+  options.duration_s = 40.0;
+  options.seed = 43;
+  SurveyedDrive drive(options);
+  std::size_t named = 0;
+  for (const StepReport& r : graph_reports(drive)) {
+    if (!claims_pose(r.state)) continue;
+    EXPECT_LT(drive.error_m(r), 3.0 * r.sigma_trans_m);
+    if (r.state != State::kDegraded) continue;
+    ++named;
+    const Eigen::Vector3d axis =
+        drive.simulation->truth_at(r.pose_time).rotation * Eigen::Vector3d::UnitX();
+    ASSERT_EQ(r.weak_directions.size(), 1U);
+    EXPECT_GT(std::abs(r.weak_directions[0].dot(axis)), 0.9);
+  }
+  EXPECT_GT(named, 0U);
+}
+
 TEST(AGraphDrive, SurvivesAJumpOfTheImuBiases) {
   SurveyedDrive drive(drive_of("office", "imu_bias_jump@8"));
   for (const StepReport& r : graph_reports(drive)) {

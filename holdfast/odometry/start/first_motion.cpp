@@ -210,18 +210,8 @@ Explanation best_of_all(const Search& search, const Vector3d& guess, double long
   return best;
 }
 
-}  // namespace
-
-void begin_map(const FirstScan& first, const Vector3d& v_odom, const Vector3d& gravity,
-               LocalMap& map, filter::UpdateWorkspace& work) {
-  filter::MatchState moving = match_state(first.state, gravity);
-  moving.v_map = v_odom;
-  filter::deskew_scan(first.selected, moving, work);
-  map.clear();
-  map.follow(moving.T_map_body.translation);
-  map.insert(work.points.points, moving.T_map_body, first.selected.T_body_lidar.translation);
-}
-
+/// At `to`, if the body only turned since `from`, as the gyroscope says, and stands still, so that
+/// both scans stay as skewed as they are.
 FilterState turned_on_the_spot(const FilterState& from, const preprocess::ImuSegment& imu,
                                TimeNs to) {
   Vector3d rate = Vector3d::Zero();
@@ -233,6 +223,18 @@ FilterState turned_on_the_spot(const FilterState& from, const preprocess::ImuSeg
   turned.T_map_body.rotation =
       (from.T_map_body.rotation * so3::exp(to_seconds(to - from.t) * rate)).normalized();
   return turned;
+}
+
+}  // namespace
+
+void begin_map(const FirstScan& first, const Vector3d& v_odom, const Vector3d& gravity,
+               LocalMap& map, filter::UpdateWorkspace& work) {
+  filter::MatchState moving = match_state(first.state, gravity);
+  moving.v_map = v_odom;
+  filter::deskew_scan(first.selected, moving, work);
+  map.clear();
+  map.follow(moving.T_map_body.translation);
+  map.insert(work.points.points, moving.T_map_body, first.selected.T_body_lidar.translation);
 }
 
 FirstMotion find_first_motion(FirstScan& first, const filter::SelectedScan& second,

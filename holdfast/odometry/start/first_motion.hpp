@@ -22,11 +22,6 @@ struct FirstScan {
 void begin_map(const FirstScan& first, const Eigen::Vector3d& v_odom,
                const Eigen::Vector3d& gravity, LocalMap& map, filter::UpdateWorkspace& work);
 
-/// What the body felt and did between two scans, but for its way: turned as the gyroscope says, and
-/// standing still, so that both scans stay as skewed as they are.
-filter::FilterState turned_on_the_spot(const filter::FilterState& from,
-                                       const preprocess::ImuSegment& imu, TimeNs to);
-
 enum class FirstMotion {
   kNone,   ///< the scans have too little in common
   kRests,  ///< nothing speaks against a robot that stands still
