@@ -1,7 +1,5 @@
 #include "holdfast/odometry/increment.hpp"
 
-#include <Eigen/Cholesky>
-
 namespace holdfast::odometry {
 namespace {
 
@@ -35,12 +33,10 @@ Matrix15d error_transition(const FilterState& a, const FilterState& b,
   return F;
 }
 
-Increment increment_between(const FilterState& before, const FilterState& predicted,
-                            const FilterState& after, const Matrix15d& predicted_before) {
+Increment increment_between(const FilterState& before, const FilterState& after,
+                            const Matrix15d& after_before) {
   Increment increment;
   increment.T_prev_cur = before.T_map_body.inverse() * after.T_map_body;
-  // The correction leaves the share I - K H = P_after P_predicted^-1 of the prediction's errors.
-  const Matrix15d cross = after.P * predicted.P.ldlt().solve(predicted_before);
   const Eigen::Matrix3d R = before.T_map_body.rotation.toRotationMatrix();
   Matrix6d J_before = Matrix6d::Zero();
   J_before.topLeftCorner<3, 3>() = -R.transpose();
@@ -49,7 +45,7 @@ Increment increment_between(const FilterState& before, const FilterState& predic
       -increment.T_prev_cur.rotation.toRotationMatrix().transpose();
   Matrix6d J_after = Matrix6d::Identity();
   J_after.topLeftCorner<3, 3>() = R.transpose();
-  const Matrix6d mixed = J_after * cross.topLeftCorner<6, 6>() * J_before.transpose();
+  const Matrix6d mixed = J_after * after_before.topLeftCorner<6, 6>() * J_before.transpose();
   const Matrix6d sum = J_before * before.P.topLeftCorner<6, 6>() * J_before.transpose() +
                        J_after * after.P.topLeftCorner<6, 6>() * J_after.transpose() + mixed +
                        mixed.transpose();

@@ -18,13 +18,11 @@ struct Increment {
 filter::Matrix15d error_transition(const filter::FilterState& from, const filter::FilterState& to,
                                    const Eigen::Vector3d& gravity);
 
-/// The increment from `before`, by way of `predicted` (propagated from `before`, not yet corrected)
-/// to `after` (corrected). Errors of both ends are correlated: what the scan did not correct, the
-/// IMU carried over from before. `predicted_before` is the covariance of the errors of `predicted`
-/// (rows) and `before`.
-Increment increment_between(const filter::FilterState& before, const filter::FilterState& predicted,
-                            const filter::FilterState& after,
-                            const filter::Matrix15d& predicted_before);
+/// The increment from `before` to `after`. Errors of both ends are correlated: what the scan did not
+/// correct, the IMU carried over from before. `after_before` is the covariance of the errors of
+/// `after` (rows) and `before`.
+Increment increment_between(const filter::FilterState& before, const filter::FilterState& after,
+                            const filter::Matrix15d& after_before);
 
 /// Covariance of T_a_c = T_a_b * T_b_c from that of T_a_b and that of an independent increment
 /// T_b_c, both [position in the frame on the left, rotation on the right].

@@ -13,7 +13,7 @@ constexpr double kFreshM = 0.01;  // error of what was put into the map a moment
 
 }  // namespace
 
-void count_from_here(FilterState& state, GravityEstimate& gravity) {
+Matrix15d count_from_here(FilterState& state) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
       state.P.block<3, 3>(FilterState::kP, FilterState::kP));
   Eigen::Matrix3d drifting = Eigen::Matrix3d::Zero();
@@ -22,13 +22,13 @@ void count_from_here(FilterState& state, GravityEstimate& gravity) {
     const Eigen::Vector3d u = solver.eigenvectors().col(i);
     drifting += u * u.transpose();
   }
-  if (drifting.isZero()) return;
   Matrix15d kept = Matrix15d::Identity();
+  if (drifting.isZero()) return kept;
   kept.block<3, 3>(FilterState::kP, FilterState::kP) -= drifting;
   state.P = kept * state.P * kept.transpose();
   state.P.block<3, 3>(FilterState::kP, FilterState::kP) += kFreshM * kFreshM * drifting;
   state.P = (0.5 * (state.P + state.P.transpose())).eval();
-  gravity.change_errors(kept);
+  return kept;
 }
 
 }  // namespace holdfast::odometry

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "holdfast/odometry/gravity_estimate.hpp"
+#include "holdfast/filter/filter_state.hpp"
 
 namespace holdfast::odometry {
 
@@ -11,7 +11,8 @@ namespace holdfast::odometry {
 /// than the way since it was first seen.
 ///
 /// So wherever the position's error has grown beyond what the map holds, it is counted anew from
-/// where the robot is. Call after a scan that was matched; without scans the map does not drift.
-void count_from_here(filter::FilterState& state, GravityEstimate& gravity);
+/// where the robot is. Returns what the errors were multiplied by, for all that has a covariance
+/// with them. Call after a scan that was matched; without scans the map does not drift.
+filter::Matrix15d count_from_here(filter::FilterState& state);
 
 }  // namespace holdfast::odometry

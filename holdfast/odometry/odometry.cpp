@@ -136,10 +136,10 @@ filter::Matrix15d Odometry::predict(TimeNs to, OdometryReport& report) {
 
 Odometry::Passage Odometry::pass(OdometryReport& report) {
   Passage passage{state_, state_, gravity_, filter::Matrix15d::Zero()};
-  passage.predicted_before = predict(report.step.pose_time, report);
+  passage.now_before = predict(report.step.pose_time, report);
   if (rest_.holds(segment_)) {
     const FilterState moving = state_;
-    passage.predicted_before = filter::Rest::correct(state_) * passage.predicted_before;
+    passage.now_before = filter::Rest::correct(state_) * passage.now_before;
     gravity_.correct(moving, state_);
   }
   passage.predicted = state_;
@@ -183,15 +183,20 @@ UpdateResult Odometry::correct(StageClock& clock) {
   return update;
 }
 
-/// Where the planes leave a direction open.
-void Odometry::correct_by_edges(const UpdateResult& update) {
-  if (!edges_on_ ||
+/// Where the planes leave a direction open. The state stands corrected by the planes.
+void Odometry::correct_by_edges(const UpdateResult& update, Passage& passage) {
+  if (update.usable) {
+    // The correction left the share I - K H = P P_predicted^-1 of the prediction's errors.
+    passage.now_before = state_.P * passage.predicted.P.ldlt().solve(passage.now_before);
+  }
+  edge_reference_.follow(passage.before.P, state_.P, passage.now_before);
+  if (!edges_on_) edge_reference_.clear();
+  if (!edges_on_ || !update.usable ||
       registration::weak_directions(update.equations, setup_.odometry.weak_sigma_m).empty()) {
-    edge_reference_.clear();
     return;
   }
   find_edges(edges_);
-  edge_reference_.correct(edges_, scan_, gravity_.value(), state_);
+  edge_reference_.correct(edges_, scan_, gravity_.value(), state_, passage.now_before);
 }
 
 /// Squared Mahalanobis distance between the scan's pose and the predicted one.
@@ -236,7 +241,7 @@ UpdateResult Odometry::release_biases(const UpdateResult& update, Passage& passa
   const UpdateResult released = correct(clock);
   if (released.usable && released.equations.weight > kFitsBetter * update.equations.weight) {
     passage.predicted = predicted;
-    passage.predicted_before = predicted_before;
+    passage.now_before = predicted_before;
     return released;
   }
   state_ = held;
@@ -267,8 +272,8 @@ void Odometry::track(StageClock& clock, OdometryReport& report) {
     if (surprised > kSurprise && state_.t >= last_surprise_ + kSettle) {
       update = release_biases(update, passage, clock, report);
     }
-    if (update.usable) correct_by_edges(update);
   }
+  correct_by_edges(update, passage);
   accept(update, passage, clock, report);
 }
 
@@ -286,7 +291,9 @@ void Odometry::accept(const UpdateResult& update, const Passage& passage, StageC
         scan_.selected.empty() ? "no returns" : "the scan does not fit the local map";
     return;
   }
-  count_from_here(state_, gravity_);
+  const filter::Matrix15d change = count_from_here(state_);
+  gravity_.change_errors(change);
+  edge_reference_.change_errors(change);
   sigma_at_scan_m_ = filter::largest_sigma(state_.P, FilterState::kP);
   const double memory = keyframes_ == 0 ? 1.0 : kShareMemory;
   usual_share_ += memory * (report.step.inlier_share - usual_share_);
@@ -324,8 +331,7 @@ void Odometry::begin_epoch(const char* reason, OdometryReport& report) {
 
 void Odometry::add_increment(const Passage& passage, OdometryReport& report) {
   const FilterState& before = passage.before;
-  Increment increment =
-      increment_between(before, passage.predicted, state_, passage.predicted_before);
+  Increment increment = increment_between(before, state_, passage.now_before);
   increment.covariance *= setup_.odometry.inflation;
   const SE3 T_epoch{before.T_map_body.rotation, Eigen::Vector3d::Zero()};
   drift_ = compose_covariance(T_epoch, drift_, increment);

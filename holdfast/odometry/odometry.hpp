@@ -80,7 +80,7 @@ class Odometry {
     filter::FilterState before;
     filter::FilterState predicted;
     GravityEstimate gravity_before;
-    filter::Matrix15d predicted_before;  ///< covariance of the errors of the two
+    filter::Matrix15d now_before;  ///< covariance of the errors now (rows) and before
   };
 
   void step(const Scan& scan, StageClock& clock, OdometryReport& report);
@@ -99,7 +99,7 @@ class Odometry {
                                   StageClock& clock);
   filter::UpdateResult release_biases(const filter::UpdateResult& update, Passage& passage,
                                       StageClock& clock, OdometryReport& report);
-  void correct_by_edges(const filter::UpdateResult& update);
+  void correct_by_edges(const filter::UpdateResult& update, Passage& passage);
   double surprise(const filter::FilterState& predicted) const;
   bool contradicted(const filter::UpdateResult& update, double surprise);
   void accept(const filter::UpdateResult& update, const Passage& passage, StageClock& clock,

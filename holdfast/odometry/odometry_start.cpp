@@ -150,7 +150,7 @@ void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
   }
   state_ = first_.state;
   allow_for_climb();
-  const Passage passage = pass(report);
+  Passage passage = pass(report);
   UpdateResult update = correct(clock);
   const Eigen::Vector3d faster = state_.v_map - passage.predicted.v_map;
   if (update.usable && dt * faster.norm() > kSkewThatMattersM) {
@@ -160,7 +160,7 @@ void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
     update = correct_at(0, passage.predicted, clock);
   }
   edge_reference_.clear();
-  if (update.usable) edge_reference_.correct(edges_, scan_, gravity_.value(), state_);
+  correct_by_edges(update, passage);
   phase_ = Phase::kRunning;
   last_keyframe_ = passage.before.T_map_body;
   accept(update, passage, clock, report);

@@ -10,6 +10,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using filter::FilterState;
+using filter::Matrix15d;
 
 const Vector3d kGravity(0, 0, -9.81);
 constexpr TimeNs kRevolution = kSecond / 10;
@@ -44,66 +45,107 @@ struct Street {
   }
 };
 
-/// Known to a millimetre but for the way along the street, to 0.2 m.
-FilterState state_at(double x) {
+/// A robot that knows itself to a millimetre but for the way along the street, whose error each
+/// scan grows by 0.2 m.
+struct Robot {
+  EdgeReference reference;
   FilterState state;
-  state.t = kRevolution;
-  state.T_map_body.translation.x() = x;
-  state.P = 1e-6 * filter::Matrix15d::Identity();
-  state.P(FilterState::kP, FilterState::kP) = 0.04;
-  return state;
-}
+  Matrix15d now_before = Matrix15d::Zero();
+
+  Robot() {
+    state.t = kRevolution;
+    state.P = 1e-6 * Matrix15d::Identity();
+  }
+
+  /// Goes on by `believed`, and looks at `street` from `x`.
+  void go(double believed, const Street& street, double x, std::uint64_t seed) {
+    const Matrix15d before = state.P;
+    state.T_map_body.translation.x() += believed;
+    state.P(FilterState::kP, FilterState::kP) += 0.04;
+    now_before = before;  // all else stays as it is
+    reference.follow(before, state.P, now_before);
+    look(street, x, seed);
+  }
+
+  void look(const Street& street, double x, std::uint64_t seed) {
+    reference.correct(street.seen_from(x, seed), street.selected, kGravity, state, now_before);
+  }
+
+  double x() const { return state.T_map_body.translation.x(); }
+  double sigma_x() const { return std::sqrt(state.P(FilterState::kP, FilterState::kP)); }
+};
 
 TEST(EdgeReference, HoldsTheWayThatThePlanesLeaveOpen) {
   const Street street;
-  EdgeReference reference;
-  FilterState first = state_at(0);
-  reference.correct(street.seen_from(0, 2), street.selected, kGravity, first);
-  EXPECT_EQ(first.T_map_body.translation.x(), 0) << "nothing to be held against yet";
+  Robot robot;
+  robot.look(street, 0, 2);
+  EXPECT_EQ(robot.x(), 0) << "nothing to be held against yet";
   for (int scan = 1; scan <= 5; ++scan) {
     const double x = 0.8 * scan;
-    FilterState state = state_at(x + 0.08);
-    reference.correct(street.seen_from(x, 2 + static_cast<std::uint64_t>(scan)), street.selected,
-                      kGravity, state);
-    // 90 edges of 1 cm, seen twice: 1.5 mm; a hundredth of the prior, too.
-    EXPECT_NEAR(state.T_map_body.translation.x(), x, 0.01) << "scan " << scan;
-    EXPECT_NEAR(state.T_map_body.translation.y(), 0, 0.003);
-    const double sigma = std::sqrt(state.P(FilterState::kP, FilterState::kP));
-    EXPECT_LT(sigma, 0.05);
-    EXPECT_GT(sigma, 0.01) << "ten scans count for one, of a centimetre in common";
+    robot.go(0.88, street, x, 2 + static_cast<std::uint64_t>(scan));
+    EXPECT_NEAR(robot.x(), x, 0.01) << "scan " << scan;
+    EXPECT_NEAR(robot.state.T_map_body.translation.y(), 0, 0.003);
+    EXPECT_LT(robot.sigma_x(), 0.02);
+  }
+}
+
+/// The reference was seen once: however many scans meet it, its error of 1 cm stays in the way.
+TEST(EdgeReference, WhatAllScansHaveInCommonIsNotAveragedAway) {
+  const Street street;
+  Robot robot;
+  robot.look(street, 0, 2);
+  for (std::uint64_t scan = 1; scan <= 100; ++scan) robot.go(0, street, 0, 2 + scan);
+  EXPECT_GT(robot.sigma_x(), 0.01);
+  EXPECT_LT(robot.sigma_x(), 0.015);
+}
+
+/// Between two scans the same reference's error cancels.
+TEST(EdgeReference, TheStepBetweenTwoScansIsKnownBetterThanTheWay) {
+  const Street street;
+  Robot robot;
+  robot.look(street, 0, 2);
+  for (std::uint64_t scan = 1; scan <= 20; ++scan) {
+    const double before = robot.state.P(0, 0);
+    robot.go(0.88, street, 0.8 * static_cast<double>(scan), 2 + scan);
+    const double step = before + robot.state.P(0, 0) - 2 * robot.now_before(0, 0);
+    EXPECT_GT(step, 0);
+    if (scan == 1) continue;
+    // Both edges' common centimetres, and nothing of the reference's.
+    EXPECT_NEAR(std::sqrt(step), std::sqrt(2.0) * 0.01, 0.003) << scan;
   }
 }
 
 TEST(EdgeReference, ACorrelatedVelocityFollows) {
   const Street street;
-  EdgeReference reference;
-  FilterState first = state_at(0);
-  reference.correct(street.seen_from(0, 2), street.selected, kGravity, first);
-  FilterState state = state_at(0.88);
-  state.P(FilterState::kV, FilterState::kV) = 4.0;
-  state.P(FilterState::kV, FilterState::kP) = state.P(FilterState::kP, FilterState::kV) = 0.39;
-  reference.correct(street.seen_from(0.8, 3), street.selected, kGravity, state);
+  Robot robot;
+  robot.look(street, 0, 2);
+  const Matrix15d before = robot.state.P;
+  robot.state.T_map_body.translation.x() = 0.88;
+  robot.state.P(FilterState::kP, FilterState::kP) = 0.04;
+  robot.state.P(FilterState::kV, FilterState::kV) = 4.0;
+  robot.state.P(FilterState::kV, FilterState::kP) = 0.39;
+  robot.state.P(FilterState::kP, FilterState::kV) = 0.39;
+  robot.now_before = before;
+  robot.reference.follow(before, robot.state.P, robot.now_before);
+  robot.look(street, 0.8, 3);
   // The position was 0.08 m too far on, and the speed is wrong by 0.39 / 0.04 of that.
-  EXPECT_NEAR(state.v_map.x(), -0.78, 0.15);
-  EXPECT_LT(state.P(FilterState::kV, FilterState::kV), 1.0);
+  EXPECT_NEAR(robot.state.v_map.x(), -0.78, 0.15);
+  EXPECT_LT(robot.state.P(FilterState::kV, FilterState::kV), 1.0);
 }
 
 TEST(EdgeReference, AScanThatHasLittleInCommonCorrectsNothingAndIsTheNextReference) {
   const Street street;
-  EdgeReference reference;
-  FilterState first = state_at(0);
-  reference.correct(street.seen_from(0, 2), street.selected, kGravity, first);
+  Robot robot;
+  robot.look(street, 0, 2);
   // Round a corner: nothing of what was seen is here.
-  FilterState far = state_at(300);
-  reference.correct(street.seen_from(0, 3), street.selected, kGravity, far);
-  EXPECT_EQ(far.T_map_body.translation.x(), 300);
-  FilterState next = state_at(300.85);
-  reference.correct(street.seen_from(0.8, 4), street.selected, kGravity, next);
-  EXPECT_NEAR(next.T_map_body.translation.x(), 300.8, 0.01);
-  reference.clear();
-  FilterState again = state_at(301.7);
-  reference.correct(street.seen_from(1.6, 5), street.selected, kGravity, again);
-  EXPECT_EQ(again.T_map_body.translation.x(), 301.7);
+  robot.go(300, street, 0, 3);
+  EXPECT_EQ(robot.x(), 300);
+  robot.go(0.85, street, 0.8, 4);
+  EXPECT_NEAR(robot.x(), 300.8, 0.01);
+  robot.reference.clear();
+  const double last = robot.x();
+  robot.go(0.85, street, 1.6, 5);
+  EXPECT_EQ(robot.x(), last + 0.85);
 }
 
 }  // namespace

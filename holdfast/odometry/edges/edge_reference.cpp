@@ -12,67 +12,60 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using filter::FilterState;
+using filter::Matrix15d;
 
-constexpr double kCommonSigmaM = 0.01;  // error that all edges of a scan have in common
-// All scans that meet one reference share its errors, and how an edge is seen changes with the
-// place: squared errors of many scans together, by those of as many that know nothing of each
-// other.
-constexpr double kAlike = 10;
-constexpr double kLeastShare = 0.25;  // of the edges that a reference has to know
-constexpr double kLeastWeight = 8;    // edges that must agree
-constexpr int kIterations = 3;
+constexpr double kReferenceSigmaM = 0.01;  // error of the reference's edges, in common
+constexpr double kLeastShare = 0.25;       // of the edges that a reference has to know
+constexpr double kLeastWeight = 8;         // edges that must agree
 
-/// What edges say about a position.
-struct Told {
-  Vector3d moved = Vector3d::Zero();
-  Matrix3d information = Matrix3d::Zero();
-  double weight = 0;
-};
-
-/// `P`: covariance of the position that `way` leads to.
-Told ask(const EdgeWays& ways, const Vector3d& way, const Matrix3d& P) {
-  Told told;
-  for (int i = 0; i < kIterations; ++i) {
-    const EdgeWays::Fit fit = ways.fit(way + told.moved);
-    const Matrix3d share =
-        (Matrix3d::Identity() + kCommonSigmaM * kCommonSigmaM * fit.H).inverse() / kAlike;
-    told.information = share * fit.H;
-    told.weight = fit.weight;
-    // (P^-1 + H) d = -(P^-1 moved + g), without inverting P.
-    const Matrix3d A = Matrix3d::Identity() + P * told.information;
-    told.moved -= A.partialPivLu().solve(told.moved + P * (share * fit.g));
-  }
-  return told;
-}
-
-/// All of the state follows its position by their covariance.
-void apply(const Told& told, FilterState& state) {
-  const Eigen::Matrix<double, 15, 3> of_position = state.P.leftCols<3>();
-  const Matrix3d P = of_position.topRows<3>();
-  const filter::Vector15d delta = of_position * P.ldlt().solve(told.moved);
-  const Matrix3d& H = told.information;
-  state.P -= of_position * (H * (Matrix3d::Identity() + P * H).inverse()) * of_position.transpose();
-  state.P = (0.5 * (state.P + state.P.transpose())).eval();
-  state.add(delta);
-}
+Matrix3d position_of(const Matrix15d& P) { return P.topLeftCorner<3, 3>(); }
 
 }  // namespace
 
+void EdgeReference::begin(std::vector<EdgePoint> edges, const Vector3d& p_odom) {
+  edges_ = std::move(edges);
+  p_odom_ = p_odom;
+  P_way_ = kReferenceSigmaM * kReferenceSigmaM * Matrix3d::Identity();
+  cross_.setZero();
+  with_before_.setZero();
+}
+
+/// r grows by what the position's error grows by.
+void EdgeReference::follow(const Matrix15d& P_before, const Matrix15d& P_now,
+                           const Matrix15d& now_before) {
+  if (edges_.empty()) return;
+  // Given the errors before, those now know nothing of r.
+  const Eigen::Matrix<double, 15, 3> carried = now_before * P_before.ldlt().solve(cross_);
+  with_before_ = cross_.transpose() + now_before.topRows<3>() - P_before.topRows<3>();
+  const Matrix3d grown = carried.topRows<3>() - cross_.topRows<3>();
+  const Matrix3d mixed = position_of(now_before);
+  P_way_ += grown + grown.transpose() + position_of(P_now) + position_of(P_before) - mixed -
+            mixed.transpose();
+  P_way_ = (0.5 * (P_way_ + P_way_.transpose())).eval();
+  cross_ = carried + P_now.leftCols<3>() - now_before.leftCols<3>();
+}
+
 void EdgeReference::correct(const std::vector<SeenEdge>& edges, const filter::SelectedScan& scan,
-                            const Vector3d& gravity, FilterState& state) {
+                            const Vector3d& gravity, FilterState& state, Matrix15d& now_before) {
   std::vector<EdgePoint> put = put_edges(
       edges, scan, {state.T_map_body, state.v_map, state.accel_bias, state.gyro_bias, gravity});
-  if (!edges_.empty()) {
-    const Told told = ask(EdgeWays(edges_, put), state.T_map_body.translation - p_odom_,
-                          state.P.topLeftCorner<3, 3>());
-    const double least = std::max(kLeastWeight, kLeastShare * static_cast<double>(put.size()));
-    if (told.weight >= least) {
-      apply(told, state);
-      return;
-    }
-  }
-  edges_ = std::move(put);
-  p_odom_ = state.T_map_body.translation;
+  const Vector3d p = state.T_map_body.translation;
+  if (edges_.empty()) return begin(std::move(put), p);
+  const EdgeWays::Told told = EdgeWays(edges_, put).refine(p - p_odom_, P_way_);
+  const double least = std::max(kLeastWeight, kLeastShare * static_cast<double>(put.size()));
+  if (told.weight < least) return begin(std::move(put), p);
+
+  const Matrix3d& H = told.information;
+  state.add(cross_ * P_way_.ldlt().solve(told.moved));
+  // What of the way's error is none of the state's now: the map around moved on with it.
+  p_odom_ += state.T_map_body.translation - p - told.moved;
+  const Matrix3d gain = H * (Matrix3d::Identity() + P_way_ * H).inverse();
+  now_before -= cross_ * gain * with_before_;
+  state.P -= cross_ * gain * cross_.transpose();
+  state.P = (0.5 * (state.P + state.P.transpose())).eval();
+  cross_ -= (cross_ * gain * P_way_).eval();
+  P_way_ -= (P_way_ * gain * P_way_).eval();
+  P_way_ = (0.5 * (P_way_ + P_way_.transpose())).eval();
 }
 
 }  // namespace holdfast::odometry

@@ -1,6 +1,7 @@
 #include "holdfast/odometry/edges/edge_ways.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -15,6 +16,8 @@ constexpr double kRobustScale = 3.0;
 constexpr double kFeignedShare = 0.05;  // of the information about the best known direction
 constexpr double kVoteCellM = 0.1;
 constexpr float kUpright = 0.9F;
+constexpr double kCommonSigmaM = 0.01;  // error that all edges of a scan have in common
+constexpr int kIterations = 3;
 
 /// Of `d` what is at right angles to `direction`.
 Eigen::Vector3f across(const Eigen::Vector3f& d, const Eigen::Vector3f& direction) {
@@ -149,6 +152,21 @@ EdgeWays::Fit EdgeWays::fit(const Eigen::Vector3d& way) const {
   }
   take_out_feigned(fit);
   return fit;
+}
+
+EdgeWays::Told EdgeWays::refine(const Eigen::Vector3d& way, const Eigen::Matrix3d& P) const {
+  Told told;
+  for (int i = 0; i < kIterations; ++i) {
+    const Fit at = fit(way + told.moved);
+    const Eigen::Matrix3d share =
+        (Eigen::Matrix3d::Identity() + kCommonSigmaM * kCommonSigmaM * at.H).inverse();
+    told.information = share * at.H;
+    told.weight = at.weight;
+    // (P^-1 + H) d = -(P^-1 moved + g), without inverting P.
+    const Eigen::Matrix3d A = Eigen::Matrix3d::Identity() + P * told.information;
+    told.moved -= A.partialPivLu().solve(told.moved + P * (share * at.g));
+  }
+  return told;
 }
 
 }  // namespace holdfast::odometry

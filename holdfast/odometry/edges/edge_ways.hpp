@@ -28,6 +28,15 @@ class EdgeWays {
   };
   Fit fit(const Eigen::Vector3d& way) const;
 
+  /// What edges add to a way that something else has told.
+  struct Told {
+    Eigen::Vector3d moved = Eigen::Vector3d::Zero();  ///< from that way to the likeliest
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the edges alone
+    double weight = 0;                                      ///< how many are believed
+  };
+  /// `P`: covariance of the error of `way`. Edges of a scan err together, too, by about 1 cm.
+  Told refine(const Eigen::Vector3d& way, const Eigen::Matrix3d& P) const;
+
  private:
   const EdgePoint* partner(const EdgePoint& edge, const Eigen::Vector3f& at) const;
 

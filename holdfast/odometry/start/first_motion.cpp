@@ -14,7 +14,6 @@ using filter::FilterState;
 constexpr double kStepM = 0.3;
 constexpr double kSearchSigmaM = 0.2;
 constexpr double kFirstMapSigmaM = 0.005;  // error of a map of one scan, common to its points
-constexpr double kEdgesSigmaM = 0.005;     // error that all edges of a scan have in common
 constexpr double kRestSigmaM = 0.003;
 constexpr double kTurnSigma = 0.003;   // rad, of the gyroscope over a scan
 constexpr double kClimbSigmaM = 0.03;  // likewise upwards: robots hardly climb
@@ -114,19 +113,11 @@ class Search {
 
   /// Joins what the edges say to what the planes said.
   void add_edges(Explanation& found) const {
-    const Vector3d by_planes = found.way;
     const Matrix3d of_planes = found.P.inverse();
-    Matrix3d information = of_planes;
-    for (int i = 0; i < 3; ++i) {
-      const EdgeWays::Fit fit = edges_.fit(found.way);
-      const Matrix3d common = Matrix3d::Identity() + kEdgesSigmaM * kEdgesSigmaM * fit.H;
-      const Matrix3d share = common.inverse();
-      information = of_planes + share * fit.H;
-      const Vector3d gradient = of_planes * (found.way - by_planes) + share * fit.g;
-      found.way -= information.ldlt().solve(gradient);
-    }
-    found.P = information.inverse();
-    const Vector3d moved = found.way - by_planes;
+    const EdgeWays::Told told = edges_.refine(found.way, found.P);
+    const Vector3d& moved = told.moved;
+    found.way += moved;
+    found.P = (of_planes + told.information).inverse();
     found.cost += moved.dot(of_planes * moved) + edges_.fit(found.way).cost;
   }
 
