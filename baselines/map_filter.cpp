@@ -67,7 +67,7 @@ void MapFilter::step(const Scan& scan, StageClock& clock, StepReport& report) {
     return;
   }
   scan_.scan = &scan;
-  preprocess::select_points(scan, setup_.selection, scan_number_, scan_.selected);
+  preprocess::select_points(scan, demand_.next(setup_.selection), scan_number_, scan_.selected);
   imu_.segment(scan.stamp, scan.end_time, scan_.imu);
   if (const auto focused = map_.focus(state_.T_map_body.translation, kMapRadiusM); !focused) {
     report.state = State::kLost;
@@ -232,6 +232,7 @@ void MapFilter::track(StageClock& clock, StepReport& report) {
   if (!update.usable) rest_.end();  // nobody would notice a start too gentle for the IMU
   if (update.usable && surprised_by_imu(predicted))
     update = release_biases(before, update, clock, report);
+  if (update.usable) demand_.learn(update.equations, scan_.selected.size(), setup_.selection);
   describe(update, report);
   judge(update, report);
 }

@@ -4,6 +4,7 @@
 
 #include "holdfast/core/step_report.hpp"
 #include "holdfast/filter/initial_alignment.hpp"
+#include "holdfast/filter/matching/point_demand.hpp"
 #include "holdfast/filter/rest.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 
@@ -98,6 +99,7 @@ class MapFilter {
   preprocess::ImuBuffer imu_;
   preprocess::ImuSegment segment_;
   UpdateWorkspace work_;
+  filter::PointDemand demand_;
   SelectedScan scan_;
   FilterState state_;
   std::vector<StartCandidate> starts_;  ///< after the first scan, until the second has chosen

@@ -18,8 +18,8 @@ struct Increment {
 filter::Matrix15d error_transition(const filter::FilterState& from, const filter::FilterState& to,
                                    const Eigen::Vector3d& gravity);
 
-/// The increment from `before` to `after`. Errors of both ends are correlated: what the scan did not
-/// correct, the IMU carried over from before. `after_before` is the covariance of the errors of
+/// The increment from `before` to `after`. Errors of both ends are correlated: what the scan did
+/// not correct, the IMU carried over from before. `after_before` is the covariance of the errors of
 /// `after` (rows) and `before`.
 Increment increment_between(const filter::FilterState& before, const filter::FilterState& after,
                             const filter::Matrix15d& after_before);

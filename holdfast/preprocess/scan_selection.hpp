@@ -13,6 +13,8 @@ struct ScanSelectionConfig {
   double max_range_m = 150.0;
   int max_points = 8000;
   double least_share = 0.25;
+  int most_points = 32000;
+  double poor_sigma_m = 0.01;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -26,6 +28,13 @@ struct ScanSelectionConfig {
           FieldDoc{"share of a scan's points that are matched though they be more than max_points: "
                    "a sensor of many beams costs more and tells more",
                    0.0, 1.0});
+    visit("most_points", self.most_points,
+          FieldDoc{"likewise, in place of max_points, while that many leave a direction poorly "
+                   "known",
+                   100, 1000000});
+    visit("poor_sigma_m", self.poor_sigma_m,
+          FieldDoc{"a direction that one scan determines worse than this is poorly known", 1e-4,
+                   10.0});
   }
 };
 

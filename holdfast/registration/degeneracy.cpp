@@ -103,6 +103,16 @@ Matrix3d feigned_offset(const NormalEquations& e) {
   return solver.eigenvectors() * variance.asDiagonal() * solver.eigenvectors().transpose();
 }
 
+std::vector<Eigen::Vector3d> few_told_directions(const NormalEquations& e) {
+  const Solver solver(position_information(e.H));
+  const Eigen::Vector3d& seeming = solver.eigenvalues();
+  std::vector<Eigen::Vector3d> few;
+  for (int i = 0; i < 2 && seeming[i] < kFewShare * seeming[2]; ++i) {
+    few.push_back(solver.eigenvectors().col(i));
+  }
+  return few;
+}
+
 std::vector<Eigen::Vector3d> weak_directions(const NormalEquations& e, double sigma_m) {
   const Solver solver(position_information(e.H) - e.feigned);
   std::vector<Eigen::Vector3d> weak;

@@ -35,6 +35,10 @@ Eigen::Matrix3d feigned_information(const NormalEquations& e, const Corresponden
 /// offset with this covariance leaves what is real.
 Eigen::Matrix3d feigned_offset(const NormalEquations& e);
 
+/// Unit vectors of the map frame, the weakest first, of which few pairs tell: less than a twentieth
+/// of what is told about the best known direction.
+std::vector<Eigen::Vector3d> few_told_directions(const NormalEquations& e);
+
 /// Unit vectors of the map frame, the weakest first, along which one scan determines the position
 /// worse than `sigma_m`, the rotation being free and `e.feigned` taken off.
 std::vector<Eigen::Vector3d> weak_directions(const NormalEquations& e, double sigma_m);

@@ -102,6 +102,7 @@ struct SurveyedDrive {
       : simulation(valid(simulation::Simulation::create(options))), map(simulation->survey_map()) {}
 
   std::string method = pipeline::Config{}.method;
+  preprocess::ScanSelectionConfig selection;
 
   std::vector<StepReport> localize(int threads = 1) { return localize(*simulation, threads); }
   /// `log` is what became of the simulation's events.
@@ -109,6 +110,7 @@ struct SurveyedDrive {
     const SE3 start = simulation->initial_pose();
     pipeline::Config config = config_of(*simulation);
     config.method = method;
+    config.preprocess = selection;
     return reports_of(log, map, config, start, threads);
   }
 

@@ -86,6 +86,18 @@ TEST(WeakDirections, AFewPointsOnTheEndsOfACorridorDetermineItsAxis) {
   EXPECT_TRUE(corridor.weak().empty());
 }
 
+TEST(FewToldDirections, AreThoseThatHardlyAnyPointFaces) {
+  Scene corridor;
+  corridor.add_box({20, 1.5, 1.2}, "yz");
+  corridor.add_box({20, 1.5, 1.2}, "x", 9);
+  const auto few = few_told_directions(corridor.equations());
+  ASSERT_EQ(few.size(), 1U) << "a twentieth of what the walls get";
+  EXPECT_NEAR(std::abs(few[0].x()), 1, 1e-6);
+  Scene room;
+  room.add_box({4, 3, 1.5}, "xyz");
+  EXPECT_TRUE(few_told_directions(room.equations()).empty());
+}
+
 /// Nothing depends on the roll about the axis either: the rotation's own information is singular.
 TEST(WeakDirections, ARoundTunnelHasItsAxis) {
   Scene tunnel;

@@ -42,7 +42,7 @@ class EdgeReference {
   Eigen::Vector3d p_odom_ = Eigen::Vector3d::Zero();  ///< where that was, as far as now known
   Eigen::Matrix3d P_way_ = Eigen::Matrix3d::Zero();   ///< of r
   Eigen::Matrix<double, 15, 3> cross_;                ///< of e (rows) and r
-  Eigen::Matrix<double, 3, 15> with_before_;  ///< of r and the errors of the state before
+  Eigen::Matrix<double, 3, 15> with_before_;          ///< of r and the errors of the state before
 };
 
 }  // namespace holdfast::odometry

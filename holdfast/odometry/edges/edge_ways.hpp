@@ -30,7 +30,7 @@ class EdgeWays {
 
   /// What edges add to a way that something else has told.
   struct Told {
-    Eigen::Vector3d moved = Eigen::Vector3d::Zero();  ///< from that way to the likeliest
+    Eigen::Vector3d moved = Eigen::Vector3d::Zero();        ///< from that way to the likeliest
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the edges alone
     double weight = 0;                                      ///< how many are believed
   };

@@ -18,12 +18,13 @@ constexpr std::uint64_t kWitnessFrom = 2;  // scans, after which the odometry be
 constexpr double kLeastWeight = 30.0;
 constexpr double kCoarseFromM = 0.1;
 constexpr float kCoarseSurfaceSigmaM = 0.05F;
-constexpr double kLeverM = 10.0;        // how far the map's planes are away
-constexpr int kJumpAges = 4;            // intervals in which a bias may have jumped unnoticed
-constexpr double kSkewToldM = 0.005;    // skew that is worth being estimated
-constexpr double kMostlyMapped = 0.5;   // share of returns; below, an odometry sees more
-constexpr double kHardlyMapped = 0.2;   // below, this is outside of the map
-constexpr double kMostScansAlike = 30;  // of the same part of the map, however slow the robot
+constexpr double kLeverM = 10.0;           // how far the map's planes are away
+constexpr int kJumpAges = 4;               // intervals in which a bias may have jumped unnoticed
+constexpr double kSkewToldM = 0.005;       // skew that is worth being estimated
+constexpr double kMostlyMapped = 0.5;      // share of returns; below, an odometry sees more
+constexpr double kHardlyMapped = 0.2;      // below, this is outside of the map
+constexpr double kFewToldInflation = 2.0;  // of the variance
+constexpr double kMostScansAlike = 30;     // of the same part of the map, however slow the robot
 
 NodeState node_of(const filter::FilterState& s, const Eigen::Vector3d& gravity) {
   return {s.t, s.T_map_body, s.v_map, s.accel_bias, s.gyro_bias, gravity};
@@ -136,6 +137,7 @@ void GraphLocalizer::step(const Scan& scan, StageClock& clock, StepReport& repor
   clock.book(Stage::kSolve);
   travel_per_scan_m_ =
       (smoother_.newest().T_map_body.translation - before.T_map_body.translation).norm();
+  if (found.usable) demand_.learn(found.equations, scan_.selected.size(), setup_.start.selection);
   estimate_map_error(found);
   describe(found, report);
   compare_with_odometry(found, report.pose_covariance);
@@ -153,7 +155,8 @@ bool GraphLocalizer::prepare(const Scan& scan, StepReport& report) {
     return false;
   }
   scan_.scan = &scan;
-  preprocess::select_points(scan, setup_.start.selection, scan_number_, scan_.selected);
+  preprocess::select_points(scan, demand_.next(setup_.start.selection), scan_number_,
+                            scan_.selected);
   imu_.segment(scan.stamp, scan.end_time, scan_.imu);
   if (const auto focused = map_->focus(last.T_map_body.translation, kMapRadiusM); !focused) {
     report.state = State::kLost;
@@ -347,11 +350,18 @@ void GraphLocalizer::estimate_map_error(const Match& match) {
   const SE3& T = smoother_.newest().T_map_body;
   map_error_ = patches_.of(work_.pairs, {T.rotation, T.translation - map_->anchor()},
                            o.robust_scale, match.equations.H.topLeftCorner<6, 6>(), model);
+  few_told_ = registration::few_told_directions(match.equations);
 }
 
-/// Of the newest pose, in the order of StepReport::pose_covariance.
+/// Of the newest pose, in the order of StepReport::pose_covariance. Where few surfaces tell a
+/// direction, one scan after the other sees the same ones, and errs as they do.
 filter::Matrix6d GraphLocalizer::pose_covariance() const {
-  return smoother_.covariance_of_newest().topLeftCorner<6, 6>() + map_error_;
+  filter::Matrix6d P = smoother_.covariance_of_newest().topLeftCorner<6, 6>() + map_error_;
+  for (const Eigen::Vector3d& u : few_told_) {
+    const double variance = u.dot(P.topLeftCorner<3, 3>() * u);
+    P.topLeftCorner<3, 3>() += (kFewToldInflation - 1.0) * variance * u * u.transpose();
+  }
+  return P;
 }
 
 void GraphLocalizer::describe(const Match& match, StepReport& report) const {

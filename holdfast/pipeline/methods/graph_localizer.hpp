@@ -8,6 +8,7 @@
 #include "baselines/map_filter.hpp"
 #include "holdfast/estimator/fixed_lag_smoother.hpp"
 #include "holdfast/filter/matching/patch_error.hpp"
+#include "holdfast/filter/matching/point_demand.hpp"
 #include "holdfast/filter/matching/scan_match.hpp"
 #include "holdfast/pipeline/methods/odometry_witness.hpp"
 #include "holdfast/pipeline/methods/scan_localizer.hpp"
@@ -114,9 +115,11 @@ class GraphLocalizer : public ScanLocalizer {
   preprocess::ImuBuffer imu_;
   preprocess::ImuSegment segment_;
   filter::UpdateWorkspace work_;
+  filter::PointDemand demand_;
   filter::SelectedScan scan_;
   filter::PatchError patches_;
   filter::Matrix6d map_error_ = filter::Matrix6d::Zero();  ///< of the last usable scan
+  std::vector<Eigen::Vector3d> few_told_;                  ///< directions, likewise
   estimator::FixedLagSmoother smoother_;
   std::unique_ptr<OdometryWitness> witness_;        ///< none: switched off
   std::optional<estimator::BetweenFactor> motion_;  ///< since the node before, by the odometry
