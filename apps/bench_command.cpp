@@ -16,7 +16,7 @@ namespace {
 struct BenchArguments {
   std::string name, out, seeds;
   std::optional<double> duration_s;
-  std::vector<std::string> settings;
+  std::vector<std::string> settings, scenarios;
   int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 };
 
@@ -28,6 +28,8 @@ void bench(const BenchArguments& args) {
   options.duration_s = args.duration_s.value_or(info.duration_s);
   options.threads = args.threads;
   options.settings = args.settings;
+  options.scenarios = args.scenarios;
+  options.out = args.out;
   benchmarks::BenchReport report;
   {
     ProgressBar bar("bench " + args.name);
@@ -70,6 +72,12 @@ void add_bench_command(CLI::App& app) {
   command
       ->add_option("--set", args->settings,
                    "module.key=value, over the configuration of each drive; repeatable")
+      ->take_all()
+      ->allow_extra_args(false);
+  command
+      ->add_option("--scenario", args->scenarios,
+                   "only this one; repeatable (bench scenarios; see holdfast simulate --list)")
+      ->type_name("NAME")
       ->take_all()
       ->allow_extra_args(false);
   command->footer(list_of_benches());

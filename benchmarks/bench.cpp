@@ -14,7 +14,7 @@
 namespace holdfast::benchmarks {
 namespace {
 
-constexpr std::array<BenchInfo, 9> kBenches = {{
+constexpr std::array<BenchInfo, 10> kBenches = {{
     {"step",
      "time of a step, beside a k-d-tree registration and plain reading of the log",
      {1, 1},
@@ -25,6 +25,13 @@ constexpr std::array<BenchInfo, 9> kBenches = {{
      {1, 10},
      60,
      measure_accuracy,
+     true},
+    {"scenarios",
+     "all scenarios, as they are, changed, and with each event; a stopped run goes on",
+     {1, 3},
+     60,
+     measure_scenarios,
+     true,
      true},
     {"import",
      "time and memory of making and using a map of 2 million points",
@@ -85,6 +92,9 @@ std::string command_of(const BenchInfo& bench, const BenchOptions& options) {
   std::string command = fmt::format(
       "holdfast bench {} --out DIR --seeds {}:{} --duration {} --threads {}", bench.name,
       options.seeds.first, options.seeds.last, options.duration_s, options.threads);
+  for (const std::string& scenario : options.scenarios) {
+    command += fmt::format(" --scenario {}", scenario);
+  }
   for (const std::string& setting : options.settings) {
     command += fmt::format(" --set \"{}\"", setting);
   }
@@ -113,6 +123,9 @@ nlohmann::ordered_json origin_of(const BenchInfo& bench, const BenchOptions& opt
 Status check_settings(const BenchInfo& bench, const BenchOptions& options) {
   if (!options.settings.empty() && !bench.takes_settings) {
     return Error{fmt::format("bench {} takes no --set", bench.name)};
+  }
+  if (!options.scenarios.empty() && !bench.takes_scenarios) {
+    return Error{fmt::format("bench {} takes no --scenario", bench.name)};
   }
   pipeline::Config config;
   auto fields = pipeline::fields_of(config);

@@ -32,7 +32,9 @@ struct BenchOptions {
   SeedRange seeds;
   double duration_s = 20;  ///< of each simulated drive
   int threads = 1;
-  std::vector<std::string> settings;  ///< module.key=value, over the configuration of each drive
+  std::vector<std::string> settings;   ///< module.key=value, over the configuration of each drive
+  std::vector<std::string> scenarios;  ///< none: all of the bench
+  std::filesystem::path out;           ///< where a long bench keeps what it has; empty: nowhere
   Progress progress = [](double, const std::string&) {};
 };
 
@@ -50,7 +52,8 @@ struct BenchInfo {
   SeedRange seeds;           ///< what is taken when the command line says nothing
   double duration_s;
   Result<BenchReport> (*measure)(const BenchOptions&);
-  bool takes_settings = false;  ///< runs the system as configured
+  bool takes_settings = false;   ///< runs the system as configured
+  bool takes_scenarios = false;  ///< measures those that are asked for
 };
 
 /// All benches, in the order in which the help shows them.

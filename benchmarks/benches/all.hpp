@@ -16,6 +16,11 @@ Result<BenchReport> measure_step(const BenchOptions& options);
 /// `threads` drives run at a time, each on one thread.
 Result<BenchReport> measure_accuracy(const BenchOptions& options);
 
+/// All scenarios over seeds, as they are, in a changed world, and with each event; streamed,
+/// without a log on disk. What is done stands in options.out / "scenarios.drives.jsonl", and is not
+/// done again. `threads` places are driven through at a time, each on one thread.
+Result<BenchReport> measure_scenarios(const BenchOptions& options);
+
 /// Making a map of 2 million points and localizing in it, each in a process of its own, so that the
 /// peak memory is its own. `threads` fit the surfaces.
 Result<BenchReport> measure_import(const BenchOptions& options);

@@ -14,6 +14,8 @@ Result<std::unique_ptr<simulation::Simulation>> make_drive(const DriveSpec& spec
   options.duration_s = spec.duration_s;
   options.threads = spec.threads;
   options.lidar = spec.lidar;
+  options.events = spec.events;
+  options.changed_share = spec.changed_share;
   return simulation::Simulation::create(options);
 }
 

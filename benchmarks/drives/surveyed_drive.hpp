@@ -18,6 +18,8 @@ struct DriveSpec {
   int threads = 1;  ///< for casting rays and fitting surfaces; the drive does not depend on it
   std::vector<std::string> settings = {};  ///< module.key=value, over the robot's configuration
   simulation::LidarModel lidar = simulation::LidarModel::rs16();
+  std::vector<simulation::EventSpec> events = {};
+  double changed_share = 0;  ///< of the world's objects since the survey
 };
 
 /// A simulated drive that has not begun, and all that `holdfast localize` would be given: the map

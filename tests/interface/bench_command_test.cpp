@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "tests/interface/program.hpp"
@@ -24,7 +25,8 @@ TEST(BenchCommand, WritesTheTableThatItPrints) {
 TEST(BenchCommand, NamesTheBenchesWhenAskedForAnotherOne) {
   const auto run = run_program("bench speed --out " + scratch());
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.out.find("step, accuracy, import, simulator"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("step, accuracy, scenarios, import, simulator"), std::string::npos)
+      << run.out;
   EXPECT_FALSE(std::filesystem::exists(scratch()));
 }
 
@@ -36,6 +38,42 @@ TEST(BenchCommand, TakesSettingsWhereTheSystemRuns) {
   EXPECT_EQ(useless.exit_code, 1);
   EXPECT_NE(useless.out.find("takes no --set"), std::string::npos) << useless.out;
   EXPECT_FALSE(std::filesystem::exists(scratch()));
+}
+
+TEST(BenchCommand, GoesOnWhereAStoppedRunOfAllScenariosWas) {
+  const std::string command =
+      "bench scenarios --scenario box --seeds 1 --duration 6 --out " + scratch();
+  const auto run = run_program(command);
+  EXPECT_EQ(run.exit_code, 0) << run.out;
+  for (const char* row : {"| box, nominal", "| box, changed", "| box, kidnap", "| box, blind"}) {
+    EXPECT_NE(run.out.find(row), std::string::npos) << run.out;
+  }
+  // As if stopped after the first drive.
+  const std::filesystem::path file = scratch() + "/scenarios.drives.jsonl";
+  std::string terms, first;
+  {
+    std::ifstream in(file);
+    std::getline(in, terms);
+    std::getline(in, first);
+  }
+  EXPECT_NE(first.find("box nominal 1"), std::string::npos);
+  std::ofstream(file) << terms << "\n" << first << "\n";
+  const auto again = run_program(command);
+  EXPECT_EQ(again.exit_code, 0) << again.out;
+  EXPECT_NE(again.out.find("| box, nominal"), std::string::npos) << again.out;
+  const auto other = run_program(command + " --set method=map_filter");
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_NE(other.out.find("choose another folder"), std::string::npos) << other.out;
+  std::filesystem::remove_all(scratch());
+}
+
+TEST(BenchCommand, RefusesScenariosThatThereAreNot) {
+  const auto unknown = run_program("bench scenarios --scenario cellar --out " + scratch());
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_NE(unknown.out.find("known are: corridor"), std::string::npos) << unknown.out;
+  const auto useless = run_program("bench step --scenario hall --out " + scratch());
+  EXPECT_EQ(useless.exit_code, 1);
+  EXPECT_NE(useless.out.find("takes no --scenario"), std::string::npos) << useless.out;
 }
 
 TEST(BenchCommand, RefusesSeedsOfAnotherForm) {
