@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "simulation/files/scenario_file.hpp"
 #include "simulation/scenarios/all.hpp"
 
 namespace holdfast::simulation {
@@ -29,12 +30,14 @@ constexpr std::array<ScenarioInfo, 8> kScenarios = {{
 std::span<const ScenarioInfo> scenarios() { return kScenarios; }
 
 Result<Scenario> make_scenario(std::string_view name) {
+  if (name.ends_with(".yaml")) return read_scenario_file(name);
   std::string known;
   for (const ScenarioInfo& info : kScenarios) {
     if (info.name == name) return info.make();
     known += fmt::format("{}{}", known.empty() ? "" : ", ", info.name);
   }
-  return Error{fmt::format("unknown scenario '{}'; known are: {}", name, known)};
+  return Error{fmt::format("unknown scenario '{}'; known are: {}, and files that end in .yaml",
+                           name, known)};
 }
 
 }  // namespace holdfast::simulation

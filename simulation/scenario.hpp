@@ -33,7 +33,8 @@ struct ScenarioInfo {
 /// All scenarios, in the order in which `holdfast simulate --list` shows them.
 std::span<const ScenarioInfo> scenarios();
 
-/// Builds a scenario. The error lists the known names.
+/// Builds a scenario of that name, or the one in a file whose name ends in .yaml. The error lists
+/// the known names.
 Result<Scenario> make_scenario(std::string_view name);
 
 }  // namespace holdfast::simulation

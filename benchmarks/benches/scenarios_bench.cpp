@@ -107,7 +107,8 @@ class Results {
   /// A drive that could not be made is a result, too; one that cannot be written ends the bench.
   void add(const std::string& key, const Result<Json>& result) {
     const std::lock_guard lock(mutex_);
-    const Status added = log_.add(key, result ? *result : Json{{"failure", result.error().message}});
+    const Status added =
+        log_.add(key, result ? *result : Json{{"failure", result.error().message}});
     if (!added && status_) status_ = added;
   }
 

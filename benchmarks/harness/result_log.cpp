@@ -45,9 +45,10 @@ Status ResultLog::read(const Json& terms) {
                                                  : line.contains(kKey) && line.contains(kResult));
     if (!ours) return Error{fmt::format("{}: not results of this bench", file_.string())};
     if (first && line[kTerms] != terms) {
-      return Error{fmt::format("{} holds results for {}; these would be for {}: remove it, or choose "
-                               "another folder",
-                               file_.string(), line[kTerms].dump(), terms.dump())};
+      return Error{
+          fmt::format("{} holds results for {}; these would be for {}: remove it, or choose "
+                      "another folder",
+                      file_.string(), line[kTerms].dump(), terms.dump())};
     }
     if (!first) known_[line[kKey].get<std::string>()] = line[kResult];
     first = false;

@@ -17,9 +17,9 @@ class ResultLog {
   /// Kept in memory only.
   ResultLog() = default;
 
-  /// `terms` is what the results hold for (durations, settings): it is the first line of a new file.
-  /// Errors: a file that cannot be written, that is none of ours, or that holds for other terms.
-  /// Half a line at the end, as a stopped run leaves it, is dropped.
+  /// `terms` is what the results hold for (durations, settings): it is the first line of a new
+  /// file. Errors: a file that cannot be written, that is none of ours, or that holds for other
+  /// terms. Half a line at the end, as a stopped run leaves it, is dropped.
   static Result<ResultLog> open(const std::filesystem::path& file,
                                 const nlohmann::ordered_json& terms);
 

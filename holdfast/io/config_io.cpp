@@ -14,11 +14,14 @@
 #include <utility>
 #include <variant>
 
+#include "holdfast/io/yaml_block.hpp"
+
 namespace holdfast::io {
 namespace {
 
 using Type = FieldRef::Type;
-using Value = std::variant<bool, int, double, std::string, std::vector<double>, SE3>;
+using Value = std::variant<bool, int, double, std::string, std::vector<double>, Eigen::Vector2d,
+                           Eigen::Vector3d, SE3>;
 
 constexpr std::uintmax_t kLargestFile = 1 << 20;
 
@@ -103,6 +106,16 @@ Result<std::vector<double>> read_doubles(const YAML::Node& node, const FieldDoc&
   return values;
 }
 
+template <int kSize>
+Result<Eigen::Matrix<double, kSize, 1>> read_vector(const YAML::Node& node, const FieldDoc& doc) {
+  if (!node.IsSequence() || node.size() != kSize) {
+    return expected(fmt::format("{} numbers", kSize), describe(node));
+  }
+  const auto values = read_doubles(node, doc);
+  if (!values) return values.error();
+  return Eigen::Matrix<double, kSize, 1>(values->data());
+}
+
 /// A quaternion of unit norm stays as it is, so that writing and reading keep the bits: a
 /// normalised one has a squared norm within 4 epsilon of 1 (three roundings a component, four in
 /// the sum).
@@ -138,6 +151,8 @@ Result<Value> read_value(const YAML::Node& node, const FieldRef& field) {
     case Type::kDouble: return widen(read_number<double>(node, "a finite number", field.doc));
     case Type::kString: return widen(read_string(node, field.doc));
     case Type::kDoubles: return widen(read_doubles(node, field.doc));
+    case Type::kVector2: return widen(read_vector<2>(node, field.doc));
+    case Type::kVector3: return widen(read_vector<3>(node, field.doc));
     case Type::kPose: return widen(read_pose(node));
   }
   return Error{"a field of no known type"};
@@ -300,6 +315,25 @@ Status read_config_file(const std::filesystem::path& path, std::vector<FieldRef>
   reader.store_all();
   return Done{};
 }
+
+Status read_block(const YAML::Node& block, const std::string& file, std::vector<FieldRef>& fields) {
+  DocumentReader reader(file, fields);
+  Status status = reader.read(block);
+  if (status) reader.store_all();
+  return status;
+}
+
+Result<YAML::Node> load_yaml(const std::filesystem::path& path) {
+  const auto text = read_text(path);
+  if (!text) return text.error();
+  return parse_document(path.string(), *text);
+}
+
+Result<YAML::Node> parse_yaml(const std::string& text, const std::string& name) {
+  return parse_document(name, text);
+}
+
+std::string describe_node(const YAML::Node& node) { return describe(node); }
 
 Status set_field(const std::string& assignment, std::vector<FieldRef>& fields) {
   const std::string place = "--set " + assignment;

@@ -17,7 +17,7 @@ namespace holdfast::io {
 struct FieldRef {
   std::string key;  ///< "map_filter.range_sigma_m", or "T_body_lidar" at the top
   void* value;
-  enum class Type { kBool, kInt, kDouble, kString, kDoubles, kPose } type;
+  enum class Type { kBool, kInt, kDouble, kString, kDoubles, kVector2, kVector3, kPose } type;
   FieldDoc doc;
   bool* is_set = nullptr;  ///< for required keys: becomes true when the key was read
 };
@@ -61,6 +61,10 @@ constexpr FieldRef::Type field_type() {
     return Type::kString;
   else if constexpr (std::is_same_v<T, std::vector<double>>)
     return Type::kDoubles;
+  else if constexpr (std::is_same_v<T, Eigen::Vector2d>)
+    return Type::kVector2;
+  else if constexpr (std::is_same_v<T, Eigen::Vector3d>)
+    return Type::kVector3;
   else {
     static_assert(std::is_same_v<T, SE3>, "not a type that a configuration field may have");
     return Type::kPose;

@@ -55,6 +55,11 @@ std::string pose_value(const SE3& pose) {
                      q.w());
 }
 
+template <class Vector>
+std::string list_value(const Vector& v) {
+  return fmt::format("[{}]", fmt::join(v.begin(), v.end(), ", "));
+}
+
 std::string value_text(const FieldRef& field) {
   switch (field.type) {
     case Type::kBool: return get<bool>(field) ? "true" : "false";
@@ -63,6 +68,8 @@ std::string value_text(const FieldRef& field) {
     case Type::kString: return text_value(get<std::string>(field));
     case Type::kDoubles:
       return fmt::format("[{}]", fmt::join(get<std::vector<double>>(field), ", "));
+    case Type::kVector2: return list_value(get<Eigen::Vector2d>(field));
+    case Type::kVector3: return list_value(get<Eigen::Vector3d>(field));
     case Type::kPose: return pose_value(get<SE3>(field));
   }
   return {};
@@ -77,6 +84,8 @@ std::string_view type_name(Type type) {
     case Type::kDouble: return "number";
     case Type::kString: return "text";
     case Type::kDoubles: return "list of numbers";
+    case Type::kVector2: return "two numbers";
+    case Type::kVector3: return "three numbers";
     case Type::kPose: return "pose";
   }
   return {};

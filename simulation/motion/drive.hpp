@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "holdfast/core/fields.hpp"
 #include "simulation/motion/route.hpp"
 #include "simulation/motion/trajectory.hpp"
 
@@ -23,6 +24,28 @@ struct DriveStyle {
   double sway_rad = 0.003;         ///< amplitude of roll and pitch oscillation at nominal speed
   double heave_m = 0.002;          ///< amplitude of vertical oscillation at nominal speed
   double wobble_rad = 0;           ///< amplitude of roll, pitch and yaw at 1 to 3 Hz while moving
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("speed_m_s", self.speed_m_s, FieldDoc{"nominal speed", 0.05, 50});
+    visit("acceleration_m_s2", self.acceleration_m_s2,
+          FieldDoc{"along the way, speeding up and braking", 0.01, 20});
+    visit("yaw_rate_rad_s", self.yaw_rate_rad_s,
+          FieldDoc{"the robot slows down in turns to keep within this", 0.01, 10});
+    visit("lateral_m_s2", self.lateral_m_s2, FieldDoc{"and within this", 0.01, 20});
+    visit("rest_s", self.rest_s, FieldDoc{"standing still at the start", 0, 1000});
+    visit("distance_m", self.distance_m,
+          FieldDoc{"where the drive ends when no duration is given", 1, 1e6});
+    visit("body_height_m", self.body_height_m, FieldDoc{"of the IMU above the ground", 0, 10});
+    visit("weave_m", self.weave_m, FieldDoc{"amplitude of slow deviations to the side", 0, 10});
+    visit("weave_length_m", self.weave_length_m, FieldDoc{"of their shortest wave", 0.1, 1000});
+    visit("sway_rad", self.sway_rad,
+          FieldDoc{"amplitude of roll and pitch oscillation at nominal speed", 0, 0.5});
+    visit("heave_m", self.heave_m,
+          FieldDoc{"amplitude of vertical oscillation at nominal speed", 0, 0.5});
+    visit("wobble_rad", self.wobble_rad,
+          FieldDoc{"amplitude of roll, pitch and yaw at 1 to 3 Hz while moving", 0, 0.52});
+  }
 
   /// The same way at `factor` times the speed; turning rate and accelerations grow likewise.
   DriveStyle faster(double factor) const;

@@ -36,7 +36,9 @@ std::uint16_t WorldBuilder::material_index(const Material& material) {
 void WorldBuilder::triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c,
                             const Material& material) {
   const auto first = static_cast<std::uint32_t>(world_.vertices.size());
-  for (const Vector3d& p : {a, b, c}) world_.vertices.push_back(p.cast<float>());
+  for (const Vector3d& p : {a, b, c}) {
+    world_.vertices.push_back((p + offset_).cast<float>());
+  }
   world_.triangles.push_back({first, first + 1, first + 2});
   world_.material_of.push_back(material_index(material));
   world_.object_of.push_back(object_);
@@ -51,6 +53,13 @@ void WorldBuilder::object(WorldObject object, const std::function<void()>& parts
   }
   parts();
   if (outermost) object_ = 0;
+}
+
+void WorldBuilder::moved(const Vector3d& offset, const std::function<void()>& parts) {
+  const Vector3d before = offset_;
+  offset_ += offset;
+  parts();
+  offset_ = before;
 }
 
 void WorldBuilder::spare(const std::function<void()>& parts) {

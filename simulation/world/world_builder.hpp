@@ -70,6 +70,8 @@ class WorldBuilder {
 
   /// What `parts` builds is one object; objects within it belong to it.
   void object(WorldObject object, const std::function<void()>& parts);
+  /// What `parts` builds stands `offset` away from where it says.
+  void moved(const Eigen::Vector3d& offset, const std::function<void()>& parts);
   /// The objects in `parts` are spare ones.
   void spare(const std::function<void()>& parts);
 
@@ -86,6 +88,7 @@ class WorldBuilder {
   World world_;
   std::uint16_t object_ = 0;  ///< that triangles are being built for, as in World::object_of
   bool spare_ = false;
+  Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace holdfast::simulation

@@ -15,9 +15,9 @@ TEST(DriveCases, AreTheDriveAsItIsAChangedWorldAndEachEvent) {
   EXPECT_EQ(cases[0].changed_share, 0);
   EXPECT_EQ(cases[1].changed_share, 0.2);
   for (const std::string_view name : simulation::event_names()) {
-    EXPECT_TRUE(std::any_of(cases.begin(), cases.end(),
-                            [&](const DriveCase& what) { return what.name == name; }))
-        << name;
+    EXPECT_TRUE(std::any_of(cases.begin(), cases.end(), [&](const DriveCase& what) {
+      return what.name == name;
+    })) << name;
   }
 }
 

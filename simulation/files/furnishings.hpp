@@ -1,0 +1,164 @@
+#pragma once
+
+#include "simulation/files/solids.hpp"
+#include "simulation/world/furniture.hpp"
+
+/// What stands in worlds, as files hold it (simulation/world/furniture.hpp).
+namespace holdfast::simulation {
+
+/// What all of them have.
+struct StandingPart {
+  Eigen::Vector2d at{0, 0};
+  double yaw_deg = 0;
+  bool has_at = false;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("at", self.at, FieldDoc{"x y where it stands"}, &self.has_at);
+    visit("yaw_deg", self.yaw_deg, FieldDoc{"turned about the vertical; its front faces +x"});
+  }
+  Placement place() const { return {at, yaw_deg * kRadPerDeg}; }
+};
+
+/// Things of one size.
+template <void (*kAdd)(WorldBuilder&, const Placement&)>
+struct PlainPart : StandingPart {
+  void add_to(WorldBuilder& build) const { kAdd(build, place()); }
+};
+
+using DeskPart = PlainPart<add_desk>;
+using ChairPart = PlainPart<add_chair>;
+using PlainChairPart = PlainPart<add_plain_chair>;
+using CarPart = PlainPart<add_car>;
+
+struct PlantPart : StandingPart {
+  void add_to(WorldBuilder& build) const { add_plant(build, at); }
+};
+
+/// Things of a length.
+template <void (*kAdd)(WorldBuilder&, const Placement&, double)>
+struct LongPart : StandingPart {
+  double length = 2;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    StandingPart::fields(self, visit);
+    visit("length", self.length, FieldDoc{"along y before it is turned; of a pole its height", 0.1, 100});
+  }
+  void add_to(WorldBuilder& build) const { kAdd(build, place(), length); }
+};
+
+using TablePart = LongPart<add_table>;
+using BenchPart = LongPart<add_bench>;
+using PolePart = LongPart<add_pole>;
+
+struct TreePart : StandingPart {
+  double height = 6;
+  int shape = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    StandingPart::fields(self, visit);
+    visit("height", self.height, FieldDoc{"", 0.5, 60});
+    visit("shape", self.shape, FieldDoc{"another number, another crown", 0, 1000});
+  }
+  void add_to(WorldBuilder& build) const { add_tree(build, at, height, shape); }
+};
+
+struct ShelfPart : StandingPart {
+  double width = 1, height = 2;
+  int variant = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    StandingPart::fields(self, visit);
+    visit("width", self.width, FieldDoc{"along y before it is turned", 0.1, 50});
+    visit("height", self.height, FieldDoc{"", 0.1, 20});
+    visit("variant", self.variant, FieldDoc{"another number, other folders", 0, 1000});
+  }
+  void add_to(WorldBuilder& build) const {
+    add_shelf(build, place(), width, height, static_cast<unsigned>(variant));
+  }
+};
+
+struct CabinetPart : StandingPart {
+  double width = 1, height = 2;
+  std::string material = "wood";
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    StandingPart::fields(self, visit);
+    visit("width", self.width, FieldDoc{"along y before it is turned", 0.1, 50});
+    visit("height", self.height, FieldDoc{"", 0.1, 20});
+    visit("material", self.material, FloorPart::material_doc());
+  }
+  void add_to(WorldBuilder& build) const {
+    add_cabinet(build, place(), width, height, material_of(material));
+  }
+};
+
+struct PartitionPart : StandingPart {
+  double length = 2, height = 1.6;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    StandingPart::fields(self, visit);
+    visit("length", self.length, FieldDoc{"along y before it is turned", 0.1, 50});
+    visit("height", self.height, FieldDoc{"", 0.1, 20});
+  }
+  void add_to(WorldBuilder& build) const { add_partition(build, place(), length, height); }
+};
+
+struct CratePart : StandingPart {
+  Eigen::Vector3d size{1, 1, 1};
+  std::string material = "cardboard";
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    StandingPart::fields(self, visit);
+    visit("size", self.size, FieldDoc{"along x, y and z before it is turned", 0.01, 100});
+    visit("material", self.material, FloorPart::material_doc());
+  }
+  void add_to(WorldBuilder& build) const {
+    add_crate(build, place(), size, material_of(material));
+  }
+};
+
+struct WallBoxPart : StandingPart {
+  double bottom = 1;
+  Eigen::Vector3d size{0.1, 1, 1};
+  std::string material = "painted metal";
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    StandingPart::fields(self, visit);
+    visit("bottom", self.bottom, FieldDoc{"height of its lower side"});
+    visit("size", self.size, FieldDoc{"away from the wall, along it, and up", 0.001, 100});
+    visit("material", self.material, FloorPart::material_doc());
+  }
+  void add_to(WorldBuilder& build) const {
+    add_wall_box(build, place(), bottom, size, material_of(material));
+  }
+};
+
+struct RackPart : StandingPart {
+  RackPlan plan;
+  int variant = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    StandingPart::fields(self, visit);
+    visit("bays", self.plan.bays, FieldDoc{"places side by side", 1, 1000});
+    visit("bay", self.plan.bay, FieldDoc{"width of each", 0.3, 20});
+    visit("levels", self.plan.levels, FieldDoc{"one above the other", 1, 50});
+    visit("level_height", self.plan.level_height, FieldDoc{"of each", 0.2, 20});
+    visit("variant", self.variant, FieldDoc{"another number, other loads", 0, 1000});
+  }
+  void add_to(WorldBuilder& build) const {
+    RackPlan loaded = plan;
+    loaded.variant = static_cast<unsigned>(variant);
+    add_rack(build, place(), loaded);
+  }
+};
+
+}  // namespace holdfast::simulation

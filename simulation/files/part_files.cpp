@@ -1,0 +1,213 @@
+#include "simulation/files/part_files.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "holdfast/io/yaml_block.hpp"
+#include "simulation/files/furnishings.hpp"
+
+namespace holdfast::simulation {
+namespace {
+
+using Fields = std::vector<io::FieldRef>;
+
+Error at(const std::string& file, const YAML::Node& node, const std::string& message) {
+  return {fmt::format("{}:{}: {}", file, node.Mark().line + 1, message)};
+}
+
+/// `block` without keys that are no fields.
+YAML::Node without(const YAML::Node& block, std::initializer_list<std::string_view> keys) {
+  if (!block.IsMap()) return block;
+  YAML::Node rest(YAML::NodeType::Map);
+  for (const auto& entry : block) {
+    const bool left_out = entry.first.IsScalar() &&
+                          std::find(keys.begin(), keys.end(), entry.first.Scalar()) != keys.end();
+    if (!left_out) rest[entry.first] = entry.second;
+  }
+  return rest;
+}
+
+template <class Part>
+Status read_part(const YAML::Node& block, const std::string& place, const std::string& file,
+                 Part& part) {
+  Fields fields;
+  io::collect_fields("", part, fields);
+  if (auto read = io::read_block(block, file, fields); !read) return read;
+  return io::check_required(place, fields);
+}
+
+std::string place_of(const std::string& file, const YAML::Node& node) {
+  return fmt::format("{}:{}", file, node.Mark().line + 1);
+}
+
+template <class Part>
+Status build_part(const YAML::Node& block, const std::string& file, WorldBuilder& build) {
+  Part part;
+  if (auto read = read_part(block, place_of(file, block), file, part); !read) return read;
+  part.add_to(build);
+  return Done{};
+}
+
+template <class Part>
+std::string keys_of() {
+  Part part;
+  Fields fields;
+  io::collect_fields("", part, fields);
+  return io::config_reference(fields);
+}
+
+Status build_wall(const YAML::Node& block, const std::string& file, WorldBuilder& build) {
+  WallPart wall;
+  const std::string place = place_of(file, block);
+  if (auto read = read_part(without(block, {"openings"}), place, file, wall); !read) return read;
+  const YAML::Node openings = block.IsMap() ? block["openings"] : YAML::Node();
+  if (openings.IsDefined() && !openings.IsNull() && !openings.IsSequence()) {
+    return at(file, openings,
+              fmt::format("openings: expected a list, found {}", io::describe_node(openings)));
+  }
+  for (const YAML::Node& node : openings) {
+    OpeningPart hole;
+    if (auto read = read_part(node, place_of(file, node), file, hole); !read) return read;
+    hole.opening.back = material_of(hole.back);
+    wall.plan.openings.push_back(hole.opening);
+  }
+  wall.add_to(build);
+  return Done{};
+}
+
+/// A list below `parts`, so many times, each time a step on.
+struct RepeatPart {
+  int times = 2;
+  Eigen::Vector3d step{1, 0, 0};
+  bool has_times = false, has_step = false;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("times", self.times, FieldDoc{"how often `parts` are built", 1, 10000}, &self.has_times);
+    visit("step", self.step, FieldDoc{"from one to the next, x y z"}, &self.has_step);
+  }
+};
+
+Status build_repeat(const YAML::Node& block, const std::string& file, WorldBuilder& build) {
+  RepeatPart repeat;
+  const std::string place = place_of(file, block);
+  if (auto read = read_part(without(block, {"parts"}), place, file, repeat); !read) return read;
+  Status status = Done{};
+  for (int i = 0; i < repeat.times && status; ++i) {
+    build.moved(i * repeat.step, [&] { status = build_parts(block["parts"], file, build); });
+  }
+  return status;
+}
+
+struct ObjectPart {
+  WorldObject object;
+  bool has_name = false;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("name", self.object.name, FieldDoc{"what it is"}, &self.has_name);
+    visit("mounted", self.object.mounted,
+          FieldDoc{"it comes and goes, but does not wander, in a changed world"});
+  }
+};
+
+Status build_object(const YAML::Node& block, const std::string& file, WorldBuilder& build) {
+  ObjectPart part;
+  const std::string place = place_of(file, block);
+  if (auto read = read_part(without(block, {"parts"}), place, file, part); !read) return read;
+  Status status = Done{};
+  build.object(part.object, [&] { status = build_parts(block["parts"], file, build); });
+  return status;
+}
+
+Status build_spare(const YAML::Node& block, const std::string& file, WorldBuilder& build) {
+  Status status = Done{};
+  build.spare([&] { status = build_parts(block, file, build); });
+  return status;
+}
+
+std::string no_keys() { return "\nA list of parts.\n"; }
+
+struct PartKind {
+  std::string_view name;
+  std::string_view summary;
+  Status (*build)(const YAML::Node&, const std::string&, WorldBuilder&);
+  std::string (*keys)();
+};
+
+template <class Part>
+constexpr PartKind kind(std::string_view name, std::string_view summary) {
+  return {name, summary, build_part<Part>, keys_of<Part>};
+}
+
+constexpr std::array kParts = {
+    kind<FloorPart>("floor", "floor or ground over a rectangle, seen from above"),
+    kind<CeilingPart>("ceiling", "the same seen from below"),
+    PartKind{"wall", "upright wall; `openings` is a list of doors, niches, windows, passages",
+             build_wall, keys_of<WallPart>},
+    kind<BoxPart>("box", "solid box that stands or floats"),
+    kind<RampPart>("ramp", "flat ground that rises"),
+    kind<CylinderPart>("cylinder", "solid upright cylinder"),
+    kind<DeskPart>("desk", "desk with a monitor, 1.4 x 0.75 m"),
+    kind<ChairPart>("chair", "office chair"),
+    kind<PlainChairPart>("plain_chair", "wooden chair"),
+    kind<TablePart>("table", "table on four legs, 0.9 m wide"),
+    kind<ShelfPart>("shelf", "open shelf with folders"),
+    kind<CabinetPart>("cabinet", "closed cabinet"),
+    kind<PartitionPart>("partition", "upright panel"),
+    kind<PlantPart>("plant", "pot with a bush"),
+    kind<CratePart>("crate", "something closed that was put down"),
+    kind<BenchPart>("bench", "bench without a back"),
+    kind<WallBoxPart>("wall_box", "flat thing on a wall; `at` lies on the wall, +x points off it"),
+    kind<TreePart>("tree", "deciduous tree"),
+    kind<PolePart>("pole", "lamp post or sign"),
+    kind<CarPart>("car", "parked car, 4.4 m long"),
+    kind<RackPart>("rack", "pallet rack with loads, along y before it is turned"),
+    PartKind{"repeat", "builds the list in `parts` several times", build_repeat,
+             keys_of<RepeatPart>},
+    PartKind{"object", "the list in `parts` is one object, which a changed world may move or lack",
+             build_object, keys_of<ObjectPart>},
+    PartKind{"spare", "parts that are not there unless a changed world brings them", build_spare,
+             no_keys},
+};
+
+Status build_one(const YAML::Node& entry, const std::string& file, WorldBuilder& build) {
+  if (!entry.IsMap() || entry.size() != 1) {
+    return at(file, entry, fmt::format("expected a part and its keys, as in `- box: {{...}}`, found {}",
+                                       io::describe_node(entry)));
+  }
+  const auto part = *entry.begin();
+  std::string known;
+  for (const PartKind& kind : kParts) {
+    if (part.first.IsScalar() && part.first.Scalar() == kind.name) {
+      return kind.build(part.second, file, build);
+    }
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", kind.name);
+  }
+  return at(file, part.first,
+            fmt::format("unknown part {}; known are: {}", io::describe_node(part.first), known));
+}
+
+}  // namespace
+
+Status build_parts(const YAML::Node& list, const std::string& file, WorldBuilder& build) {
+  if (!list.IsSequence()) {
+    return at(file, list, fmt::format("expected a list of parts, found {}", io::describe_node(list)));
+  }
+  for (const YAML::Node& entry : list) {
+    if (auto built = build_one(entry, file, build); !built) return built;
+  }
+  return Done{};
+}
+
+std::string part_reference() {
+  std::string text;
+  for (const PartKind& kind : kParts) {
+    text += fmt::format("### {}\n\n{}.\n{}\n", kind.name, kind.summary, kind.keys());
+    if (kind.name == "wall") text += "\nEach of its openings:\n" + keys_of<OpeningPart>() + "\n";
+  }
+  return text;
+}
+
+}  // namespace holdfast::simulation

@@ -1,0 +1,168 @@
+#include "simulation/files/scenario_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "holdfast/io/yaml_block.hpp"
+#include "simulation/files/part_files.hpp"
+
+namespace holdfast::simulation {
+namespace {
+
+using Fields = std::vector<io::FieldRef>;
+
+constexpr std::size_t kFewestCorners = 3;
+constexpr std::array kKeys = {"name", "summary", "world", "route", "drive", "people"};
+
+/// One document, block by block.
+class ScenarioReader {
+ public:
+  explicit ScenarioReader(std::string file) : file_(std::move(file)) {}
+
+  Result<Scenario> read(const YAML::Node& document) {
+    if (!document.IsMap()) return expected(document, "a block of keys");
+    if (auto keys = check_keys(document); !keys) return keys.error();
+    Scenario scenario;
+    scenario.name = document["name"].as<std::string>("scenario");
+    WorldBuilder build;
+    if (auto built = build_parts(document["world"], file_, build); !built) return built.error();
+    scenario.world = build.build();
+    auto route = read_route(document["route"]);
+    if (!route) return route.error();
+    scenario.route = std::move(*route);
+    if (document["drive"]) {
+      if (auto drive = read_block(document["drive"], scenario.style); !drive) return drive.error();
+    }
+    auto people = read_people(document["people"]);
+    if (!people) return people.error();
+    scenario.walkers = std::move(*people);
+    return scenario;
+  }
+
+ private:
+  Error at(const YAML::Node& node, const std::string& message) const {
+    return {fmt::format("{}:{}: {}", file_, node.Mark().line + 1, message)};
+  }
+  Error expected(const YAML::Node& node, std::string_view what) const {
+    return at(node, fmt::format("expected {}, found {}", what, io::describe_node(node)));
+  }
+
+  Status check_keys(const YAML::Node& document) const {
+    for (const auto& entry : document) {
+      const std::string key = entry.first.as<std::string>("");
+      if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
+        return at(entry.first, fmt::format("unknown key '{}'; known are: {}", key,
+                                           fmt::join(kKeys, ", ")));
+      }
+    }
+    for (const char* key : {"world", "route"}) {
+      if (!document[key]) return Error{fmt::format("{}: missing: '{}'", file_, key)};
+    }
+    return Done{};
+  }
+
+  template <class Part>
+  Status read_block(const YAML::Node& block, Part& part) const {
+    Fields fields;
+    io::collect_fields("", part, fields);
+    return io::read_block(block, file_, fields);
+  }
+
+  Result<RouteCorner> read_corner(const YAML::Node& node, double radius_m) const {
+    constexpr std::string_view kForms = "[x, y], [x, y, z] or [x, y, z, radius_m]";
+    if (!node.IsSequence() || node.size() < 2 || node.size() > 4) return expected(node, kForms);
+    std::array<double, 4> v = {0, 0, 0, radius_m};
+    for (std::size_t i = 0; i < node.size(); ++i) {
+      const auto value = node[i].IsScalar() ? node[i].as<double>(NAN) : NAN;
+      if (!std::isfinite(value)) return expected(node[i], "a number");
+      v[i] = value;
+    }
+    if (v[3] <= 0) return expected(node[3], "a radius > 0");
+    return RouteCorner{{v[0], v[1], v[2]}, v[3]};
+  }
+
+  Result<Route> read_route(const YAML::Node& block) const {
+    if (!block || !block.IsMap()) return expected(block, "a route: corners and radius_m");
+    for (const auto& entry : block) {
+      const std::string key = entry.first.as<std::string>("");
+      if (key != "corners" && key != "radius_m") {
+        return at(entry.first, fmt::format("unknown key '{}'; known are: corners, radius_m", key));
+      }
+    }
+    const double radius_m = block["radius_m"].as<double>(1.0);
+    const YAML::Node list = block["corners"];
+    if (!list || !list.IsSequence() || list.size() < kFewestCorners) {
+      return at(block, "corners: expected a list of at least three");
+    }
+    std::vector<RouteCorner> corners;
+    for (const YAML::Node& node : list) {
+      const auto corner = read_corner(node, radius_m);
+      if (!corner) return corner.error();
+      const bool same =
+          !corners.empty() && (corners.back().position - corner->position).head<2>().norm() < 1e-6;
+      if (same) return at(node, "the corner stands where the one before does");
+      corners.push_back(*corner);
+    }
+    return Route::closed(corners);
+  }
+
+  Result<std::vector<WalkerPlan>> read_people(const YAML::Node& list) const {
+    std::vector<WalkerPlan> people;
+    if (!list) return people;
+    if (!list.IsSequence()) return expected(list, "a list of people");
+    for (const YAML::Node& node : list) {
+      if (!node.IsMap()) return expected(node, "a route and a speed_m_s");
+      auto route = read_route(node["route"]);
+      if (!route) return route.error();
+      const double speed_m_s = node["speed_m_s"].as<double>(WalkerPlan{*route}.speed_m_s);
+      if (!(speed_m_s > 0 && speed_m_s <= 10)) return expected(node["speed_m_s"], "0 to 10");
+      people.push_back({std::move(*route), speed_m_s});
+    }
+    return people;
+  }
+
+  std::string file_;
+};
+
+Result<Scenario> scenario_of(const Result<YAML::Node>& document, const std::string& file) {
+  if (!document) return document.error();
+  try {
+    return ScenarioReader(file).read(*document);
+  } catch (const YAML::Exception& e) {
+    return Error{fmt::format("{}:{}: {}", file, e.mark.line + 1, e.msg)};
+  }
+}
+
+}  // namespace
+
+Result<Scenario> read_scenario_file(const std::filesystem::path& path) {
+  return scenario_of(io::load_yaml(path), path.string());
+}
+
+Result<Scenario> parse_scenario(const std::string& text, const std::string& name) {
+  return scenario_of(io::parse_yaml(text, name), name);
+}
+
+std::string scenario_reference() {
+  DriveStyle style;
+  Fields fields;
+  io::collect_fields("", style, fields);
+  return fmt::format(
+      "# Scenario files\n\n"
+      "`holdfast simulate FILE.yaml --out DIR` drives through a world that a file describes:\n\n"
+      "```yaml\nname: shed\nworld:\n  - floor: {{min: [0, 0], max: [20, 10]}}\n"
+      "  - wall: {{from: [0, 0], to: [20, 0], top: 4, openings: [{{start: 3, width: 1.2}}]}}\n"
+      "  - repeat:\n      times: 4\n      step: [4, 0, 0]\n      parts:\n"
+      "        - cylinder: {{base: [4, 5, 0], radius: 0.25, height: 4}}\n"
+      "route:\n  radius_m: 1.5\n  corners: [[2, 2], [18, 2], [18, 8], [2, 8]]\n"
+      "drive: {{speed_m_s: 1.5}}\n```\n\n"
+      "Lengths are metres, z is up, and walls are seen from the left of the way from their first "
+      "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or "
+      "`[x, y, z, radius_m]`. `people` is a list of a `route` and a `speed_m_s` each.\n\n"
+      "## drive\n{}\n## Parts of the world\n\n{}",
+      io::config_reference(fields), part_reference());
+}
+
+}  // namespace holdfast::simulation
