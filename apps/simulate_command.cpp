@@ -10,6 +10,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/progress_bar.hpp"
+#include "simulation/files/scenario_file.hpp"
 #include "simulation/log_output.hpp"
 #include "simulation/simulation.hpp"
 
@@ -29,6 +30,7 @@ struct SimulateArguments {
   std::optional<double> map_noise_m;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
   bool list = false;
+  bool reference = false;
 };
 
 void print_scenarios() {
@@ -87,8 +89,13 @@ simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
 
 void simulate(const SimulateArguments& arguments) {
   if (arguments.list) return print_scenarios();
+  if (arguments.reference) {
+    std::printf("%s", simulation::scenario_reference().c_str());
+    return;
+  }
   if (arguments.scenario.empty()) {
-    throw CommandFailed{2, "simulate: expected a SCENARIO (--list shows them)"};
+    throw CommandFailed{
+        2, "simulate: expected a SCENARIO (--list shows them) or a file that ends in .yaml"};
   }
   if (arguments.out.empty()) throw CommandFailed{2, "simulate: expected --out DIR"};
   auto simulation = simulation::Simulation::create(options_of(arguments));
@@ -144,8 +151,10 @@ void add_simulate_command(CLI::App& app) {
   auto* command = app.add_subcommand(
       "simulate", "Drive a simulated robot through a world and write what its sensors saw");
   auto arguments = std::make_shared<SimulateArguments>();
-  command->add_option("SCENARIO", arguments->scenario,
-                      "world to drive through (--list shows them)");
+  command->add_option(
+      "SCENARIO", arguments->scenario,
+      "world to drive through (--list shows them), or a file that ends in .yaml and "
+      "describes one (--reference says how)");
   command
       ->add_option("--out", arguments->out,
                    "folder for run.bag, truth.tum, events.jsonl, map.pcd and config.yaml")
@@ -171,6 +180,8 @@ void add_simulate_command(CLI::App& app) {
                    "on it")
       ->type_name("N");
   command->add_flag("--list", arguments->list, "show the scenarios and stop");
+  command->add_flag("--reference", arguments->reference,
+                    "show how to write a scenario file, and stop");
   command->footer(
       "Example:\n  holdfast simulate corridor --out /tmp/drive --seed 3 "
       "--event kidnap@30 --event blind@50+3\n");

@@ -10,7 +10,7 @@
 namespace holdfast::simulation {
 namespace {
 
-constexpr std::array<ScenarioInfo, 8> kScenarios = {{
+constexpr std::array<ScenarioInfo, 9> kScenarios = {{
     {"corridor", "50 x 3 m with doors, pilasters and boards; 100 m there and back", make_corridor},
     {"office", "10 x 8 m with desks, cabinets and five people walking; 200 m of rounds",
      make_office},
@@ -22,10 +22,17 @@ constexpr std::array<ScenarioInfo, 8> kScenarios = {{
      make_tunnel},
     {"offices", "40 x 25 m floor of rooms round a ring of corridors, seven people; 170 m",
      make_offices},
+    {"garage", "40 x 24 m car park of two levels, one as the other, with ramps between; 260 m",
+     make_garage},
     {"box", "empty room of 12 x 8 x 4 m, for tests with closed forms; 30 m", make_box},
 }};
 
 }  // namespace
+
+/// From the files beside the sources, which were built in.
+Scenario make_garage() {
+  return *parse_scenario(std::string(scenario_text("garage.yaml")), "garage.yaml");
+}
 
 std::span<const ScenarioInfo> scenarios() { return kScenarios; }
 

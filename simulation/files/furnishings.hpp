@@ -43,7 +43,8 @@ struct LongPart : StandingPart {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     StandingPart::fields(self, visit);
-    visit("length", self.length, FieldDoc{"along y before it is turned; of a pole its height", 0.1, 100});
+    visit("length", self.length,
+          FieldDoc{"along y before it is turned; of a pole its height", 0.1, 100});
   }
   void add_to(WorldBuilder& build) const { kAdd(build, place(), length); }
 };
@@ -119,9 +120,7 @@ struct CratePart : StandingPart {
     visit("size", self.size, FieldDoc{"along x, y and z before it is turned", 0.01, 100});
     visit("material", self.material, FloorPart::material_doc());
   }
-  void add_to(WorldBuilder& build) const {
-    add_crate(build, place(), size, material_of(material));
-  }
+  void add_to(WorldBuilder& build) const { add_crate(build, place(), size, material_of(material)); }
 };
 
 struct WallBoxPart : StandingPart {

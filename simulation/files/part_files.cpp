@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "holdfast/io/yaml_block.hpp"
@@ -37,6 +38,12 @@ Status read_part(const YAML::Node& block, const std::string& place, const std::s
   return io::check_required(place, fields);
 }
 
+/// The list below `parts`, or nothing.
+YAML::Node parts_of(const YAML::Node& block) {
+  const YAML::Node& fixed = block;
+  return fixed["parts"] ? fixed["parts"] : YAML::Node(YAML::NodeType::Null);
+}
+
 std::string place_of(const std::string& file, const YAML::Node& node) {
   return fmt::format("{}:{}", file, node.Mark().line + 1);
 }
@@ -50,10 +57,10 @@ Status build_part(const YAML::Node& block, const std::string& file, WorldBuilder
 }
 
 template <class Part>
-std::string keys_of() {
+std::string keys_of(std::string_view name) {
   Part part;
   Fields fields;
-  io::collect_fields("", part, fields);
+  io::collect_fields(std::string(name), part, fields);
   return io::config_reference(fields);
 }
 
@@ -95,7 +102,7 @@ Status build_repeat(const YAML::Node& block, const std::string& file, WorldBuild
   if (auto read = read_part(without(block, {"parts"}), place, file, repeat); !read) return read;
   Status status = Done{};
   for (int i = 0; i < repeat.times && status; ++i) {
-    build.moved(i * repeat.step, [&] { status = build_parts(block["parts"], file, build); });
+    build.moved(i * repeat.step, [&] { status = build_parts(parts_of(block), file, build); });
   }
   return status;
 }
@@ -117,7 +124,7 @@ Status build_object(const YAML::Node& block, const std::string& file, WorldBuild
   const std::string place = place_of(file, block);
   if (auto read = read_part(without(block, {"parts"}), place, file, part); !read) return read;
   Status status = Done{};
-  build.object(part.object, [&] { status = build_parts(block["parts"], file, build); });
+  build.object(part.object, [&] { status = build_parts(parts_of(block), file, build); });
   return status;
 }
 
@@ -127,13 +134,11 @@ Status build_spare(const YAML::Node& block, const std::string& file, WorldBuilde
   return status;
 }
 
-std::string no_keys() { return "\nA list of parts.\n"; }
-
 struct PartKind {
   std::string_view name;
   std::string_view summary;
   Status (*build)(const YAML::Node&, const std::string&, WorldBuilder&);
-  std::string (*keys)();
+  std::string (*keys)(std::string_view name);  ///< none: a list of parts
 };
 
 template <class Part>
@@ -169,13 +174,14 @@ constexpr std::array kParts = {
     PartKind{"object", "the list in `parts` is one object, which a changed world may move or lack",
              build_object, keys_of<ObjectPart>},
     PartKind{"spare", "parts that are not there unless a changed world brings them", build_spare,
-             no_keys},
+             nullptr},
 };
 
 Status build_one(const YAML::Node& entry, const std::string& file, WorldBuilder& build) {
   if (!entry.IsMap() || entry.size() != 1) {
-    return at(file, entry, fmt::format("expected a part and its keys, as in `- box: {{...}}`, found {}",
-                                       io::describe_node(entry)));
+    return at(file, entry,
+              fmt::format("expected a part and its keys, as in `- box: {{...}}`, found {}",
+                          io::describe_node(entry)));
   }
   const auto part = *entry.begin();
   std::string known;
@@ -193,7 +199,8 @@ Status build_one(const YAML::Node& entry, const std::string& file, WorldBuilder&
 
 Status build_parts(const YAML::Node& list, const std::string& file, WorldBuilder& build) {
   if (!list.IsSequence()) {
-    return at(file, list, fmt::format("expected a list of parts, found {}", io::describe_node(list)));
+    return at(file, list,
+              fmt::format("expected a list of parts, found {}", io::describe_node(list)));
   }
   for (const YAML::Node& entry : list) {
     if (auto built = build_one(entry, file, build); !built) return built;
@@ -202,12 +209,14 @@ Status build_parts(const YAML::Node& list, const std::string& file, WorldBuilder
 }
 
 std::string part_reference() {
-  std::string text;
+  std::string list;
+  std::string keys;
   for (const PartKind& kind : kParts) {
-    text += fmt::format("### {}\n\n{}.\n{}\n", kind.name, kind.summary, kind.keys());
-    if (kind.name == "wall") text += "\nEach of its openings:\n" + keys_of<OpeningPart>() + "\n";
+    list += fmt::format("- `{}`: {}\n", kind.name, kind.summary);
+    if (kind.keys != nullptr) keys += kind.keys(kind.name) + "\n";
+    if (kind.name == "wall") keys += keys_of<OpeningPart>("openings of a wall") + "\n";
   }
-  return text;
+  return list + "\n" + keys;
 }
 
 }  // namespace holdfast::simulation

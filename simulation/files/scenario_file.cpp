@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -53,8 +54,8 @@ class ScenarioReader {
     for (const auto& entry : document) {
       const std::string key = entry.first.as<std::string>("");
       if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
-        return at(entry.first, fmt::format("unknown key '{}'; known are: {}", key,
-                                           fmt::join(kKeys, ", ")));
+        return at(entry.first,
+                  fmt::format("unknown key '{}'; known are: {}", key, fmt::join(kKeys, ", ")));
       }
     }
     for (const char* key : {"world", "route"}) {
@@ -148,7 +149,7 @@ Result<Scenario> parse_scenario(const std::string& text, const std::string& name
 std::string scenario_reference() {
   DriveStyle style;
   Fields fields;
-  io::collect_fields("", style, fields);
+  io::collect_fields("drive", style, fields);
   return fmt::format(
       "# Scenario files\n\n"
       "`holdfast simulate FILE.yaml --out DIR` drives through a world that a file describes:\n\n"
@@ -158,10 +159,11 @@ std::string scenario_reference() {
       "        - cylinder: {{base: [4, 5, 0], radius: 0.25, height: 4}}\n"
       "route:\n  radius_m: 1.5\n  corners: [[2, 2], [18, 2], [18, 8], [2, 8]]\n"
       "drive: {{speed_m_s: 1.5}}\n```\n\n"
-      "Lengths are metres, z is up, and walls are seen from the left of the way from their first "
-      "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or "
-      "`[x, y, z, radius_m]`. `people` is a list of a `route` and a `speed_m_s` each.\n\n"
-      "## drive\n{}\n## Parts of the world\n\n{}",
+      "Lengths are metres, z is up, and walls are seen from the left of the way from their first\n"
+      "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or\n"
+      "`[x, y, z, radius_m]`. `people` is a list of a `route` and a `speed_m_s` each.\n"
+      "[garage.yaml](../simulation/scenarios/garage.yaml) is a whole one.\n\n"
+      "{}\n## Parts of the world\n\n{}",
       io::config_reference(fields), part_reference());
 }
 

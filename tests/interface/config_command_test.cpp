@@ -41,6 +41,13 @@ TEST(ConfigCommand, TheReferencePageIsWhatTheProgramPrints) {
       << "repair: holdfast config reference > docs/configuration.md";
 }
 
+TEST(ConfigCommand, ThePageOfScenarioFilesIsWhatTheProgramPrints) {
+  const ProgramRun run = run_program("simulate --reference");
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(first_difference(content(kSource / "docs/scenario_files.md"), run.out), "")
+      << "repair: holdfast simulate --reference > docs/scenario_files.md";
+}
+
 TEST(ConfigCommand, TheShippedDefaultIsWhatTheProgramPrints) {
   const ProgramRun run = run_program("config default");
   EXPECT_EQ(run.exit_code, 0);

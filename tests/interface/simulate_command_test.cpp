@@ -1,4 +1,6 @@
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "holdfast/io/tum_file.hpp"
 #include "tests/interface/workspace.hpp"
@@ -46,6 +48,19 @@ class HardDrive : public ::testing::Test {
   Workspace out;
   ProgramRun last;
 };
+
+/// The page's own example.
+TEST(ScenarioFileOnDisk, IsDrivenThrough) {
+  const Workspace out;
+  const std::string page = expect_run("simulate --reference", 0).out;
+  const std::string fence = "```yaml\n";
+  const auto begin = page.find(fence) + fence.size();
+  std::ofstream(out / "shed.yaml") << page.substr(begin, page.find("```", begin) - begin);
+  expect_run("simulate " + (out / "shed.yaml") + " --duration 3 --out " + (out / "drive"), 0);
+  EXPECT_TRUE(std::filesystem::exists(out / "drive/run.bag"));
+  const auto wrong = expect_run("simulate shed.yml --out " + (out / "drive"), 2);
+  EXPECT_THAT(wrong.out, HasSubstr("files that end in .yaml"));
+}
 
 TEST_F(HardDrive, AChangedWorldIsAnotherOnTheSameWay) {
   const auto plain = drive("plain", "");

@@ -57,8 +57,9 @@ TEST(Scenario, RobotsKeepClearOfEverything) {
                       kidnapped ? kidnaps_every_ten_seconds() : std::vector<TimeNs>{});
       for (TimeNs t = 0; t < drive.duration(); t += kSecond / 5) {
         const Vector3d body = drive.at(t).T_map_body.translation;
+        const double ground = body.z() - scenario.style.body_height_m;
         for (const double height : {0.3, 0.6, 1.0}) {
-          ASSERT_GT(clearance(caster, {body.x(), body.y(), height}), 0.3)
+          ASSERT_GT(clearance(caster, {body.x(), body.y(), ground + height}), 0.3)
               << info.name << " seed " << seed << " at " << to_seconds(t) << " s, ("
               << body.transpose() << ")";
         }
@@ -77,8 +78,9 @@ TEST(Scenario, RobotsKeepClearInChangedWorlds) {
       const Drive drive = Drive::plan(scenario.route, scenario.style, seed, std::nullopt, {});
       for (TimeNs t = 0; t < drive.duration(); t += kSecond / 5) {
         const Vector3d body = drive.at(t).T_map_body.translation;
+        const double ground = body.z() - scenario.style.body_height_m;
         for (const double height : {0.3, 0.6, 1.0}) {
-          ASSERT_GT(clearance(caster, {body.x(), body.y(), height}), 0.3)
+          ASSERT_GT(clearance(caster, {body.x(), body.y(), ground + height}), 0.3)
               << name << " seed " << seed << " at " << body.transpose();
         }
       }
