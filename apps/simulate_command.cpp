@@ -12,6 +12,7 @@
 #include "apps/progress_bar.hpp"
 #include "simulation/files/scenario_file.hpp"
 #include "simulation/log_output.hpp"
+#include "simulation/sensors/lidar_file.hpp"
 #include "simulation/simulation.hpp"
 
 namespace holdfast::apps {
@@ -26,6 +27,7 @@ struct SimulateArguments {
   double changed_percent = 0;
   double speed_factor = 1;
   double wobble_deg = 0;
+  std::string lidar = "rs16";
   std::optional<double> range_noise_m;
   std::optional<double> map_noise_m;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
@@ -81,6 +83,7 @@ simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
   options.changed_share = arguments.changed_percent / 100;
   options.speed_factor = arguments.speed_factor;
   options.wobble_rad = arguments.wobble_deg * std::numbers::pi / 180;
+  options.lidar = value_or_fail(simulation::make_lidar(arguments.lidar), 2);
   options.lidar.range_sigma_m = arguments.range_noise_m.value_or(options.lidar.range_sigma_m);
   options.map_sigma_m = arguments.map_noise_m.value_or(options.map_sigma_m);
   options.threads = arguments.threads > 0 ? arguments.threads : 1;
@@ -134,9 +137,15 @@ void add_hardships(CLI::App& command, SimulateArguments& arguments) {
                   "(default 0)")
       ->type_name("DEG");
   command
-      .add_option("--range-noise", arguments.range_noise_m,
-                  "standard deviation of the LiDAR's ranges in metres (default 0.02); config.yaml "
-                  "says it as lidar.range_sigma_m")
+      .add_option("--lidar", arguments.lidar,
+                  "rs16 (default), vlp16, hdl64, os1_64, os1_128, or a file that ends in .yaml and "
+                  "describes one (--reference says how)")
+      ->type_name("NAME");
+  command
+      .add_option(
+          "--range-noise", arguments.range_noise_m,
+          "standard deviation of the LiDAR's ranges in metres (default: the LiDAR's); config.yaml "
+          "says it as lidar.range_sigma_m")
       ->type_name("M");
   command
       .add_option("--map-noise", arguments.map_noise_m,

@@ -98,9 +98,9 @@ world:
 }
 
 TEST(ScenarioFile, ARampRisesFromItsFootToItsHead) {
-  const Scenario ramp = parsed(
-      "world: [ramp: {from: [0, 0, 0], to: [10, 0, 2], width: 4, thickness: 0}]" +
-      std::string(kRoute));
+  const Scenario ramp =
+      parsed("world: [ramp: {from: [0, 0, 0], to: [10, 0, 2], width: 4, thickness: 0}]" +
+             std::string(kRoute));
   for (const auto& v : ramp.world.vertices) {
     EXPECT_NEAR(v.z(), 0.2F * v.x(), 1e-6);
     EXPECT_NEAR(std::abs(v.y()), 2, 1e-6);
@@ -129,7 +129,8 @@ TEST(ScenarioFile, ErrorsSayWhereAndWhatIsExpected) {
                    {"unknown key 'centre'", "'center'"});
   expect_complaint("world:\n  - floor: {min: [0, 0], max: [1, 1], material: stone}" + route,
                    {"material: expected one of", "concrete"});
-  expect_complaint("world:\n  - repeat: {times: 2, step: [1, 0, 0]}" + route, {"list of parts, found nothing"});
+  expect_complaint("world:\n  - repeat: {times: 2, step: [1, 0, 0]}" + route,
+                   {"list of parts, found nothing"});
   expect_complaint("world: 5" + route, {"expected a list of parts, found '5'"});
   expect_complaint("world: []\nroute: {corners: [[1, 1], [2, 2]]}", {"at least three"});
   expect_complaint("world: []\nroute:\n  corners: [[1, 1], [1, 1], [2, 2]]",
