@@ -1,5 +1,5 @@
-# Two uses. Included: holdfast_embed(TARGET HEADER header NAMESPACE ns FUNCTION f FILES file...) adds
-# to a library `std::string_view ns::f(std::string_view name)`, which `header` declares: the content
+# Two uses. Included: holdfast_embed(TARGET HEADER h NAMESPACE ns FUNCTION f FILES file...) adds
+# `std::string_view ns::f(std::string_view name)` to a library, as `h` declares it: the content
 # of the file of that name, empty for an unknown one. Run as a script (cmake -P, at build time):
 # writes that function.
 if(CMAKE_SCRIPT_MODE_FILE)

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "holdfast/io/yaml_block.hpp"
-#include "simulation/files/furnishings.hpp"
+#include "simulation/files/storage.hpp"
 
 namespace holdfast::simulation {
 namespace {

@@ -31,10 +31,11 @@ struct LidarFields {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("elevations_deg", self.elevations_deg,
-          FieldDoc{"of the beams above the horizon, in the order in which they fire; an empty list: "
-                   "evenly from `lowest_deg` to `highest_deg`",
-                   -90, 90});
+    visit(
+        "elevations_deg", self.elevations_deg,
+        FieldDoc{"of the beams above the horizon, in the order in which they fire; an empty list: "
+                 "evenly from `lowest_deg` to `highest_deg`",
+                 -90, 90});
     visit("beams", self.beams, FieldDoc{"their number, if they are even", 1, 1024});
     visit("lowest_deg", self.lowest_deg, FieldDoc{"of even beams", -90, 90});
     visit("highest_deg", self.highest_deg, FieldDoc{"of even beams", -90, 90});
@@ -82,9 +83,10 @@ Result<LidarModel> model_of(const LidarFields& file, const std::string& name) {
                              kMostBeams, elevations.size())};
   }
   if (fired_us >= column_us) {
-    return Error{fmt::format("{}: fire_step_us: {} beams take {:.1f} us, expected less than the {:.1f} "
-                             "us of a column",
-                             name, elevations.size(), fired_us, column_us)};
+    return Error{
+        fmt::format("{}: fire_step_us: {} beams take {:.1f} us, expected less than the {:.1f} "
+                    "us of a column",
+                    name, elevations.size(), fired_us, column_us)};
   }
   if (file.max_range_m <= file.min_range_m) {
     return Error{fmt::format("{}: max_range_m: expected more than min_range_m", name)};

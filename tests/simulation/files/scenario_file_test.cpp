@@ -62,7 +62,10 @@ world:
       times: 3
       step: [4, 0, 0]
       parts:
-        - repeat: {times: 2, step: [0, 5, 1], parts: [box: {center: [1, 1, 1], size: [1, 1, 1]}]}
+        - repeat:
+            times: 2
+            step: [0, 5, 1]
+            parts: [box: {center: [1, 1, 1], size: [1, 1, 1]}]
 )") + kRoute);
   EXPECT_EQ(rows.world.triangles.size(), 6U * 12U);
   Eigen::Vector3f high = rows.world.vertices.front();
