@@ -83,7 +83,9 @@ simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
   options.changed_share = arguments.changed_percent / 100;
   options.speed_factor = arguments.speed_factor;
   options.wobble_rad = arguments.wobble_deg * std::numbers::pi / 180;
-  options.lidar = value_or_fail(simulation::make_lidar(arguments.lidar), 2);
+  const auto lidar = simulation::make_lidar(arguments.lidar);
+  if (!lidar) throw CommandFailed{2, "simulate: " + lidar.error().message};
+  options.lidar = *lidar;
   options.lidar.range_sigma_m = arguments.range_noise_m.value_or(options.lidar.range_sigma_m);
   options.map_sigma_m = arguments.map_noise_m.value_or(options.map_sigma_m);
   options.threads = arguments.threads > 0 ? arguments.threads : 1;

@@ -62,6 +62,15 @@ TEST(ScenarioFileOnDisk, IsDrivenThrough) {
   EXPECT_THAT(wrong.out, HasSubstr("files that end in .yaml"));
 }
 
+TEST_F(HardDrive, AnotherLidarSeesOtherPoints) {
+  const auto plain = drive("plain", "");
+  const auto vlp = drive("vlp", "--lidar vlp16");
+  EXPECT_FALSE(same(plain, vlp, "run.bag"));
+  EXPECT_TRUE(same(plain, vlp, "map.pcd")) << "the survey is none of the robot's";
+  const auto wrong = expect_run("simulate office --lidar vlp61 --out " + (out / "wrong"), 2);
+  EXPECT_THAT(wrong.out, HasSubstr("known are: rs16, vlp16"));
+}
+
 TEST_F(HardDrive, AChangedWorldIsAnotherOnTheSameWay) {
   const auto plain = drive("plain", "");
   EXPECT_EQ(last.out.find("changed since the survey"), std::string::npos) << last.out;

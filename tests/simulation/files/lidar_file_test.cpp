@@ -45,7 +45,7 @@ TEST_P(NamedLidar, SeesTheWallsOfABox) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, NamedLidar, ::testing::ValuesIn(lidar_names()),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& named) { return std::string(named.param); });
 
 /// Its manual: the lasers fire 2.304 us apart, the first at -15 degrees, the second at 1.
 TEST(LidarFile, TheVlp16FiresInItsOwnOrder) {
