@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace holdfast::filter {
 namespace {
 
@@ -17,40 +19,52 @@ registration::NormalEquations told_by(double points, double sigma_x_of_usual) {
   return e;
 }
 
-int points_after(const registration::NormalEquations& told, std::size_t matched) {
-  const preprocess::ScanSelectionConfig usual;
+struct Demand {
+  preprocess::ScanSelectionConfig usual;
   PointDemand demand;
-  EXPECT_EQ(demand.next(usual).max_points, usual.max_points) << "at first the usual number";
-  demand.learn(told, matched, usual);
-  return demand.next(usual).max_points;
+
+  int points_after(const registration::NormalEquations& told, std::size_t matched) {
+    demand.learn(told, matched, usual);
+    return demand.next(usual).max_points;
+  }
+};
+
+TEST(PointDemand, IsTheUsualNumberAtFirst) {
+  const preprocess::ScanSelectionConfig usual;
+  EXPECT_EQ(PointDemand().next(usual).max_points, usual.max_points);
 }
 
 TEST(PointDemand, IsMoreWhileADirectionIsPoorlyKnown) {
-  const preprocess::ScanSelectionConfig usual;
-  EXPECT_EQ(points_after(told_by(8000, 0.009), 8000), usual.max_points);
-  EXPECT_EQ(points_after(told_by(8000, 0.011), 8000), usual.most_points);
+  Demand tunnel;
+  EXPECT_EQ(tunnel.points_after(told_by(8000, 0.009), 8000), tunnel.usual.max_points);
+  EXPECT_EQ(tunnel.points_after(told_by(8000, 0.011), 8000), tunnel.usual.most_points);
 }
 
 /// Else every second scan would be matched with many points, and the others with few.
 TEST(PointDemand, StaysWhereTheUsualNumberWouldNotDo) {
-  const preprocess::ScanSelectionConfig usual;
-  EXPECT_EQ(points_after(told_by(32000, 0.0055), 32000), usual.most_points);
-  EXPECT_EQ(points_after(told_by(32000, 0.0045), 32000), usual.max_points);
+  Demand tunnel;
+  tunnel.points_after(told_by(8000, 0.011), 8000);
+  EXPECT_EQ(tunnel.points_after(told_by(32000, 0.0055), 32000), tunnel.usual.most_points);
+  EXPECT_EQ(tunnel.points_after(told_by(32000, 0.0045), 32000), tunnel.usual.max_points);
 }
 
-/// A scan that has hardly returns is no reason to ask less of it.
-TEST(PointDemand, OfAScanWithFewPointsIsJudgedByWhatItTold) {
-  const preprocess::ScanSelectionConfig usual;
-  EXPECT_EQ(points_after(told_by(1000, 0.003), 1000), usual.max_points);
-  EXPECT_EQ(points_after(told_by(1000, 0.005), 1000), usual.most_points);
+/// The usual number of a scan is what it was matched with: fewer returns, or a share of many.
+TEST(PointDemand, OfAScanIsJudgedByWhatItTold) {
+  for (const std::size_t matched : {std::size_t{1000}, std::size_t{30000}}) {
+    const auto points = static_cast<double>(matched);
+    Demand demand;
+    const double as_one_cm = 0.01 * std::sqrt(points / 8000);
+    EXPECT_EQ(demand.points_after(told_by(points, 0.9 * as_one_cm), matched),
+              demand.usual.max_points);
+    EXPECT_EQ(demand.points_after(told_by(points, 1.1 * as_one_cm), matched),
+              demand.usual.most_points);
+  }
 }
 
 TEST(PointDemand, IsNeverLessThanTheUsualNumber) {
-  preprocess::ScanSelectionConfig many;
-  many.max_points = 50000;
-  PointDemand demand;
-  demand.learn(told_by(50000, 1.0), 50000, many);
-  EXPECT_EQ(demand.next(many).max_points, 50000);
+  Demand many;
+  many.usual.max_points = 50000;
+  EXPECT_EQ(many.points_after(told_by(50000, 1.0), 50000), 50000);
 }
 
 }  // namespace

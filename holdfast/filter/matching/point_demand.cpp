@@ -15,9 +15,10 @@ preprocess::ScanSelectionConfig PointDemand::next(
 
 void PointDemand::learn(const registration::NormalEquations& told, std::size_t matched,
                         const preprocess::ScanSelectionConfig& usual) {
+  if (!more_) usual_ = matched;
   // The usual number would have told less by this share, and of that less would be believed
   // (registration::feigned_information): the deviation would be as much larger, not its square.
-  const double share = static_cast<double>(usual.max_points) / static_cast<double>(matched);
+  const double share = static_cast<double>(usual_) / static_cast<double>(matched);
   const double sigma_m = usual.poor_sigma_m * std::min(1.0, share);
   more_ = !registration::weak_directions(told, sigma_m).empty();
 }

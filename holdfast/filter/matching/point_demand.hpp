@@ -21,6 +21,7 @@ class PointDemand {
 
  private:
   bool more_ = false;
+  std::size_t usual_ = 0;  ///< points of the last scan that was matched with no more
 };
 
 }  // namespace holdfast::filter
