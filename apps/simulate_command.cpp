@@ -115,6 +115,13 @@ void simulate(const SimulateArguments& arguments) {
   std::printf("the drive begins at --initial-pose \"%s\"\n", pose.c_str());
 }
 
+std::string lidar_help() {
+  std::string names;
+  for (const std::string_view name : simulation::lidar_names()) names += std::string(name) + ", ";
+  return names +
+         "or a file that ends in .yaml and describes one (--reference says how; default rs16)";
+}
+
 /// Options that make the drive harder than the scenario is.
 void add_hardships(CLI::App& command, SimulateArguments& arguments) {
   command
@@ -138,11 +145,7 @@ void add_hardships(CLI::App& command, SimulateArguments& arguments) {
                   "robot moves, as of a LiDAR in the hand (5) or on a rough road (2); 0 to 30 "
                   "(default 0)")
       ->type_name("DEG");
-  command
-      .add_option("--lidar", arguments.lidar,
-                  "rs16 (default), vlp16, hdl64, os1_64, os1_128, or a file that ends in .yaml and "
-                  "describes one (--reference says how)")
-      ->type_name("NAME");
+  command.add_option("--lidar", arguments.lidar, lidar_help())->type_name("NAME");
   command
       .add_option(
           "--range-noise", arguments.range_noise_m,

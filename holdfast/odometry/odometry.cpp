@@ -183,12 +183,14 @@ UpdateResult Odometry::correct(StageClock& clock) {
   return update;
 }
 
-/// Where the planes leave a direction open. The state stands corrected by the planes.
+/// The planes' correction left the share I - K H = P P_predicted^-1 of the prediction's errors.
+void Odometry::keep_what_is_left(const UpdateResult& update, Passage& passage) const {
+  if (!update.usable) return;
+  passage.now_before = state_.P * passage.predicted.P.ldlt().solve(passage.now_before);
+}
+
+/// Where the planes leave a direction open.
 void Odometry::correct_by_edges(const UpdateResult& update, Passage& passage) {
-  if (update.usable) {
-    // The correction left the share I - K H = P P_predicted^-1 of the prediction's errors.
-    passage.now_before = state_.P * passage.predicted.P.ldlt().solve(passage.now_before);
-  }
   edge_reference_.follow(passage.before.P, state_.P, passage.now_before);
   if (!edges_on_) edge_reference_.clear();
   if (!edges_on_ || !update.usable ||
@@ -273,6 +275,7 @@ void Odometry::track(StageClock& clock, OdometryReport& report) {
       update = release_biases(update, passage, clock, report);
     }
   }
+  keep_what_is_left(update, passage);
   correct_by_edges(update, passage);
   accept(update, passage, clock, report);
 }

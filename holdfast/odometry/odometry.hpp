@@ -99,6 +99,7 @@ class Odometry {
                                   StageClock& clock);
   filter::UpdateResult release_biases(const filter::UpdateResult& update, Passage& passage,
                                       StageClock& clock, OdometryReport& report);
+  void keep_what_is_left(const filter::UpdateResult& update, Passage& passage) const;
   void correct_by_edges(const filter::UpdateResult& update, Passage& passage);
   double surprise(const filter::FilterState& predicted) const;
   bool contradicted(const filter::UpdateResult& update, double surprise);

@@ -160,6 +160,7 @@ void Odometry::second_scan(StageClock& clock, OdometryReport& report) {
     update = correct_at(0, passage.predicted, clock);
   }
   edge_reference_.clear();
+  keep_what_is_left(update, passage);
   correct_by_edges(update, passage);
   phase_ = Phase::kRunning;
   last_keyframe_ = passage.before.T_map_body;

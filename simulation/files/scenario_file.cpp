@@ -16,7 +16,6 @@ namespace {
 using Fields = std::vector<io::FieldRef>;
 
 constexpr std::size_t kFewestCorners = 3;
-constexpr std::array kKeys = {"name", "summary", "world", "route", "drive", "people"};
 
 /// One document, block by block.
 class ScenarioReader {
@@ -25,7 +24,12 @@ class ScenarioReader {
 
   Result<Scenario> read(const YAML::Node& document) {
     if (!document.IsMap()) return expected(document, "a block of keys");
-    if (auto keys = check_keys(document); !keys) return keys.error();
+    const auto keys =
+        check_keys(document, {"name", "summary", "world", "route", "drive", "people"});
+    if (!keys) return keys.error();
+    for (const char* key : {"world", "route"}) {
+      if (!document[key]) return Error{fmt::format("{}: missing: '{}'", file_, key)};
+    }
     Scenario scenario;
     scenario.name = document["name"].as<std::string>("scenario");
     WorldBuilder build;
@@ -51,16 +55,13 @@ class ScenarioReader {
     return at(node, fmt::format("expected {}, found {}", what, io::describe_node(node)));
   }
 
-  Status check_keys(const YAML::Node& document) const {
-    for (const auto& entry : document) {
+  Status check_keys(const YAML::Node& block, std::initializer_list<std::string_view> known) const {
+    for (const auto& entry : block) {
       const std::string key = entry.first.as<std::string>("");
-      if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
+      if (std::find(known.begin(), known.end(), key) == known.end()) {
         return at(entry.first,
-                  fmt::format("unknown key '{}'; known are: {}", key, fmt::join(kKeys, ", ")));
+                  fmt::format("unknown key '{}'; known are: {}", key, fmt::join(known, ", ")));
       }
-    }
-    for (const char* key : {"world", "route"}) {
-      if (!document[key]) return Error{fmt::format("{}: missing: '{}'", file_, key)};
     }
     return Done{};
   }
@@ -87,12 +88,7 @@ class ScenarioReader {
 
   Result<Route> read_route(const YAML::Node& block) const {
     if (!block || !block.IsMap()) return expected(block, "a route: corners and radius_m");
-    for (const auto& entry : block) {
-      const std::string key = entry.first.as<std::string>("");
-      if (key != "corners" && key != "radius_m") {
-        return at(entry.first, fmt::format("unknown key '{}'; known are: corners, radius_m", key));
-      }
-    }
+    if (auto keys = check_keys(block, {"corners", "radius_m"}); !keys) return keys.error();
     const double radius_m = block["radius_m"].as<double>(1.0);
     const YAML::Node list = block["corners"];
     if (!list || !list.IsSequence() || list.size() < kFewestCorners) {
@@ -116,6 +112,7 @@ class ScenarioReader {
     if (!list.IsSequence()) return expected(list, "a list of people");
     for (const YAML::Node& node : list) {
       if (!node.IsMap()) return expected(node, "a route and a speed_m_s");
+      if (auto keys = check_keys(node, {"route", "speed_m_s"}); !keys) return keys.error();
       auto route = read_route(node["route"]);
       if (!route) return route.error();
       const double speed_m_s = node["speed_m_s"].as<double>(WalkerPlan{*route}.speed_m_s);

@@ -16,6 +16,13 @@ inline constexpr std::string_view kMaterialNames =
 /// One of kMaterialNames.
 Material material_of(const std::string& name);
 
+/// Of a key that names a material.
+inline FieldDoc material_doc(std::string_view text = "what its surface is made of") {
+  FieldDoc doc{text};
+  doc.choices = kMaterialNames;
+  return doc;
+}
+
 inline constexpr double kRadPerDeg = std::numbers::pi / 180;
 
 struct FloorPart {
@@ -32,12 +39,6 @@ struct FloorPart {
     visit("material", self.material, material_doc());
   }
   void add_to(WorldBuilder& build) const { build.floor(min, max, z, material_of(material)); }
-
-  static FieldDoc material_doc() {
-    FieldDoc doc{"what its surface is made of"};
-    doc.choices = kMaterialNames;
-    return doc;
-  }
 };
 
 /// Seen from below.
@@ -57,7 +58,7 @@ struct BoxPart {
     visit("size", self.size, FieldDoc{"along x, y and z before it is turned", 1e-3, 1e4},
           &self.has_size);
     visit("yaw_deg", self.yaw_deg, FieldDoc{"turned about the vertical"});
-    visit("material", self.material, FloorPart::material_doc());
+    visit("material", self.material, material_doc());
   }
   void add_to(WorldBuilder& build) const {
     build.box({center, size, yaw_deg * kRadPerDeg}, material_of(material));
@@ -78,7 +79,7 @@ struct RampPart {
     visit("to", self.to, FieldDoc{"middle of its head"}, &self.has_to);
     visit("width", self.width, FieldDoc{"across", 0.01, 1e4});
     visit("thickness", self.thickness, FieldDoc{"down to its underside", 0, 100});
-    visit("material", self.material, FloorPart::material_doc());
+    visit("material", self.material, material_doc());
   }
   void add_to(WorldBuilder& build) const;
 };
@@ -92,9 +93,9 @@ struct CylinderPart {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("base", self.base, FieldDoc{"middle of its foot, x y z"}, &self.has_base);
-    visit("radius", self.radius, FieldDoc{"", 1e-3, 1e4});
-    visit("height", self.height, FieldDoc{"", 1e-3, 1e4});
-    visit("material", self.material, FloorPart::material_doc());
+    visit("radius", self.radius, FieldDoc{"of its mantle", 1e-3, 1e4});
+    visit("height", self.height, FieldDoc{"from its foot up", 1e-3, 1e4});
+    visit("material", self.material, material_doc());
   }
   void add_to(WorldBuilder& build) const {
     build.cylinder(base, radius, height, material_of(material));
@@ -116,9 +117,7 @@ struct OpeningPart {
     visit("top", o.top, FieldDoc{"likewise"});
     visit("depth", o.depth, FieldDoc{"how far its sides reach behind the wall's face", 0, 100});
     visit("through", o.through, FieldDoc{"no back: one looks, and may drive, through"});
-    FieldDoc doc = FloorPart::material_doc();
-    doc.text = "what its back is made of";
-    visit("back", self.back, doc);
+    visit("back", self.back, material_doc("what its back is made of"));
   }
 };
 
@@ -135,7 +134,7 @@ struct WallPart {
     visit("to", self.plan.to, FieldDoc{"where it ends"}, &self.has_to);
     visit("bottom", self.plan.bottom, FieldDoc{"height"});
     visit("top", self.plan.top, FieldDoc{"height"});
-    visit("material", self.material, FloorPart::material_doc());
+    visit("material", self.material, material_doc());
   }
   void add_to(WorldBuilder& build) const {
     WallPlan whole = plan;

@@ -13,7 +13,7 @@ struct ShelfPart : StandingPart {
   static void fields(Self& self, Visitor& visit) {
     StandingPart::fields(self, visit);
     visit("width", self.width, FieldDoc{"along y before it is turned", 0.1, 50});
-    visit("height", self.height, FieldDoc{"", 0.1, 20});
+    visit("height", self.height, FieldDoc{"from the ground to the top", 0.1, 20});
     visit("variant", self.variant, FieldDoc{"another number, other folders", 0, 1000});
   }
   void add_to(WorldBuilder& build) const {
@@ -29,8 +29,8 @@ struct CabinetPart : StandingPart {
   static void fields(Self& self, Visitor& visit) {
     StandingPart::fields(self, visit);
     visit("width", self.width, FieldDoc{"along y before it is turned", 0.1, 50});
-    visit("height", self.height, FieldDoc{"", 0.1, 20});
-    visit("material", self.material, FloorPart::material_doc());
+    visit("height", self.height, FieldDoc{"from the ground to the top", 0.1, 20});
+    visit("material", self.material, material_doc());
   }
   void add_to(WorldBuilder& build) const {
     add_cabinet(build, place(), width, height, material_of(material));
@@ -45,7 +45,7 @@ struct CratePart : StandingPart {
   static void fields(Self& self, Visitor& visit) {
     StandingPart::fields(self, visit);
     visit("size", self.size, FieldDoc{"along x, y and z before it is turned", 0.01, 100});
-    visit("material", self.material, FloorPart::material_doc());
+    visit("material", self.material, material_doc());
   }
   void add_to(WorldBuilder& build) const { add_crate(build, place(), size, material_of(material)); }
 };

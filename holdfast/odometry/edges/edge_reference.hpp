@@ -41,8 +41,10 @@ class EdgeReference {
   std::vector<EdgePoint> edges_;  ///< in the odometry's axes, from where the body was
   Eigen::Vector3d p_odom_ = Eigen::Vector3d::Zero();  ///< where that was, as far as now known
   Eigen::Matrix3d P_way_ = Eigen::Matrix3d::Zero();   ///< of r
-  Eigen::Matrix<double, 15, 3> cross_;                ///< of e (rows) and r
-  Eigen::Matrix<double, 3, 15> with_before_;          ///< of r and the errors of the state before
+  /// Of e (rows) and r.
+  Eigen::Matrix<double, 15, 3> cross_ = Eigen::Matrix<double, 15, 3>::Zero();
+  /// Of r and the errors of the state before.
+  Eigen::Matrix<double, 3, 15> with_before_ = Eigen::Matrix<double, 3, 15>::Zero();
 };
 
 }  // namespace holdfast::odometry

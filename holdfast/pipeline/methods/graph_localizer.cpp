@@ -23,7 +23,7 @@ constexpr int kJumpAges = 4;               // intervals in which a bias may have
 constexpr double kSkewToldM = 0.005;       // skew that is worth being estimated
 constexpr double kMostlyMapped = 0.5;      // share of returns; below, an odometry sees more
 constexpr double kHardlyMapped = 0.2;      // below, this is outside of the map
-constexpr double kFewToldInflation = 2.0;  // of the variance
+constexpr double kFewToldInflation = 2.0;  // of the variance (docs/decisions/0004)
 constexpr double kMostScansAlike = 30;     // of the same part of the map, however slow the robot
 
 NodeState node_of(const filter::FilterState& s, const Eigen::Vector3d& gravity) {

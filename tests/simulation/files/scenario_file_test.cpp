@@ -139,6 +139,9 @@ TEST(ScenarioFile, ErrorsSayWhereAndWhatIsExpected) {
   expect_complaint("world: []\nroute:\n  corners: [[1, 1], [1, 1], [2, 2]]",
                    {"shed.yaml:3", "where the one before does"});
   expect_complaint("world: []\ndrive: {speed_m_s: -1}" + route, {"speed_m_s", "0.05 to 50"});
+  expect_complaint("world: []\npeople:\n  - {rout: 1}" + route,
+                   {"shed.yaml:3", "unknown key 'rout'", "route, speed_m_s"});
+  expect_complaint("world:\n  - tree: {at: [1, 1], yaw_deg: 5}" + route, {"unknown key 'yaw_deg'"});
   expect_complaint("- a\n- b", {"expected a block of keys"});
   expect_complaint("world: [", {"shed.yaml:"});
 }
