@@ -12,7 +12,7 @@
 #include "apps/progress_bar.hpp"
 #include "simulation/files/scenario_file.hpp"
 #include "simulation/log_output.hpp"
-#include "simulation/sensors/lidar_file.hpp"
+#include "simulation/sensors/lidar/lidar_file.hpp"
 #include "simulation/simulation.hpp"
 
 namespace holdfast::apps {

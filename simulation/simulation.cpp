@@ -3,92 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <numbers>
 
 #include "holdfast/core/parallel.hpp"
-#include "simulation/sensors/imu_sensor.hpp"
-#include "simulation/sensors/lidar_sensor.hpp"
+#include "simulation/events/event_schedule.hpp"
+#include "simulation/sensors/imu/imu_sensor.hpp"
+#include "simulation/sensors/lidar/lidar_sensor.hpp"
 #include "simulation/world/survey.hpp"
 
 namespace holdfast::simulation {
 namespace {
 
 constexpr TimeNs kEpoch = 1'700'000'000 * kSecond;
-
-/// Starts of all events of one kind, in order.
-std::vector<TimeNs> starts_of(EventKind kind, const std::vector<EventSpec>& events) {
-  std::vector<TimeNs> starts;
-  for (const EventSpec& event : events) {
-    if (event.kind == kind) starts.push_back(event.start);
-  }
-  std::sort(starts.begin(), starts.end());
-  return starts;
-}
-
-std::vector<TimeSpan> spans_of(EventKind kind, const std::vector<EventSpec>& events) {
-  std::vector<TimeSpan> spans;
-  for (const EventSpec& event : events) {
-    if (event.kind != kind) continue;
-    spans.push_back({event.start, event.start + event.duration});
-  }
-  return spans;
-}
-
-std::vector<BiasJump> draw_jumps(const SimulationOptions& options) {
-  RandomStream random(options.seed, "imu.bias_jump");
-  std::vector<BiasJump> jumps;
-  for (const TimeNs t : starts_of(EventKind::kImuBiasJump, options.events)) {
-    jumps.push_back(ImuSensor::draw_jump(options.imu, t, random));
-  }
-  return jumps;
-}
-
-/// What is wrong with the options that make a drive harder, empty when nothing is.
-std::string hardship_complaint(const SimulationOptions& options) {
-  if (!(options.changed_share >= 0 && options.changed_share <= 1)) {
-    return fmt::format("{} % of the world changed: expected 0 to 100", 100 * options.changed_share);
-  }
-  if (!(options.map_sigma_m >= 0 && options.map_sigma_m <= 1)) {
-    return fmt::format("map noise of {} m: expected 0 to 1", options.map_sigma_m);
-  }
-  if (!(options.lidar.range_sigma_m >= 0 && options.lidar.range_sigma_m <= 1)) {
-    return fmt::format("range noise of {} m: expected 0 to 1", options.lidar.range_sigma_m);
-  }
-  if (!(options.speed_factor >= 0.1 && options.speed_factor <= 10)) {
-    return fmt::format("{} times the speed: expected 0.1 to 10", options.speed_factor);
-  }
-  constexpr double kMostWobble = 30 * std::numbers::pi / 180;  // pitch stays far from 90 degrees
-  if (!(options.wobble_rad >= 0 && options.wobble_rad <= kMostWobble)) {
-    return fmt::format("wobble of {} degrees: expected 0 to 30",
-                       options.wobble_rad * 180 / std::numbers::pi);
-  }
-  return {};
-}
-
-/// What is wrong with the options, empty when nothing is.
-std::string complaint(const Scenario& scenario, const SimulationOptions& options) {
-  if (const std::string hard = hardship_complaint(options); !hard.empty()) return hard;
-  const double interval = 1e9 / options.imu.rate_hz;
-  if (!(options.imu.rate_hz > 0) || std::abs(interval - std::round(interval)) > 1e-6) {
-    return fmt::format("imu rate of {} Hz: expected a whole number of nanoseconds between samples",
-                       options.imu.rate_hz);
-  }
-  const LidarModel& lidar = options.lidar;
-  if (lidar.beams.empty() || lidar.columns < 1 || lidar.period < 1) {
-    return fmt::format("lidar with {} beams, {} columns and a period of {} ns: expected some",
-                       lidar.beams.size(), lidar.columns, lidar.period);
-  }
-  if (scenario.world.triangles.empty()) {
-    return fmt::format("scenario '{}': its world has no surface", scenario.name);
-  }
-  if (options.duration_s && !(*options.duration_s >= 0.5 && *options.duration_s <= 1e6)) {
-    return fmt::format("duration of {} s: expected 0.5 to 1000000", *options.duration_s);
-  }
-  if (options.threads < 1) return fmt::format("{} threads: expected at least 1", options.threads);
-  return {};
-}
 
 std::string late_event(const SimulationOptions& options, TimeNs duration) {
   for (const EventSpec& event : options.events) {
@@ -113,9 +39,7 @@ struct Simulation::Parts {
   std::size_t imu_samples;
   TimeNs first_scan;  ///< begin of the first revolution; times here count from the start of the log
   std::size_t scans;  ///< revolutions, those without a message included
-  std::vector<TimeSpan> lidar_off;
-  std::vector<TimeSpan> imu_off;
-  std::vector<BiasJump> jumps;
+  EventSchedule schedule;
   ImuSensor imu;
   LidarSensor lidar;
   Surroundings around;
@@ -138,7 +62,6 @@ struct Simulation::Parts {
   void drop_silent_imu();
   ImuSample take_imu();
   Scan take_scan();
-  std::vector<SimulatedEvent> list_events() const;
   TrueState state(TimeNs t) const;
 };
 
@@ -156,22 +79,20 @@ Simulation::Parts::Parts(Scenario the_scenario, std::optional<ChangedWorld> chan
           static_cast<double>(drive.duration()) * options.imu.rate_hz / 1e9 + 1 + 1e-9)),
       first_scan(from_seconds(RandomStream(options.seed, "lidar.phase").uniform(0.01, 0.06))),
       scans(0),
-      lidar_off(spans_of(EventKind::kLidarOff, options.events)),
-      imu_off(spans_of(EventKind::kImuOff, options.events)),
-      jumps(draw_jumps(options)),
-      imu(options.imu, options.seed, imu_samples, jumps),
+      schedule(options.events, options.imu, options.seed),
+      imu(options.imu, options.seed, imu_samples, schedule.bias_jumps),
       lidar(options.lidar, options.seed),
-      around{caster, scenario.world.materials, drive, walkers,
-             spans_of(EventKind::kBlind, options.events)} {
+      around{caster, scenario.world.materials, drive, walkers, schedule.blind} {
   scans =
       static_cast<std::size_t>(std::max<TimeNs>(log_end() - first_scan, 0) / options.lidar.period);
-  events = list_events();
+  events = schedule.took_place(drive, kEpoch, log_end());
 }
 
 /// A revolution that the LiDAR could not begin or finish makes no message.
 bool Simulation::Parts::is_silent(std::size_t scan) const {
   const TimeNs begin = scan_begin(scan);
-  return std::any_of(lidar_off.begin(), lidar_off.end(), [&](const TimeSpan& off) {
+  const auto& off_spans = schedule.lidar_off;
+  return std::any_of(off_spans.begin(), off_spans.end(), [&](const TimeSpan& off) {
     return begin < off.end && off.begin < begin + options.lidar.period;
   });
 }
@@ -188,7 +109,7 @@ void Simulation::Parts::cast_pending() {
 /// Samples that make no message are measured all the same: the noise of later ones stays as it is.
 void Simulation::Parts::drop_silent_imu() {
   const auto is_off = [&](TimeNs t) {
-    return std::any_of(imu_off.begin(), imu_off.end(),
+    return std::any_of(schedule.imu_off.begin(), schedule.imu_off.end(),
                        [t](const TimeSpan& span) { return span.contains(t); });
   };
   while (next_imu < imu_samples && is_off(static_cast<TimeNs>(next_imu) * imu.interval())) {
@@ -210,33 +131,6 @@ Scan Simulation::Parts::take_scan() {
   scan.stamp += kEpoch;
   scan.end_time += kEpoch;
   return scan;
-}
-
-std::vector<SimulatedEvent> Simulation::Parts::list_events() const {
-  std::vector<SimulatedEvent> out;
-  const auto add = [&](EventKind kind, TimeNs t0, TimeNs t1) -> SimulatedEvent& {
-    SimulatedEvent event;
-    event.kind = kind;
-    event.t0 = kEpoch + t0;
-    event.t1 = kEpoch + std::min(t1, log_end());
-    return out.emplace_back(event);
-  };
-  for (const TimeSpan& span : around.blind) add(EventKind::kBlind, span.begin, span.end);
-  for (const TimeSpan& span : lidar_off) add(EventKind::kLidarOff, span.begin, span.end);
-  for (const TimeSpan& span : imu_off) add(EventKind::kImuOff, span.begin, span.end);
-  for (const BiasJump& jump : jumps) {
-    SimulatedEvent& event = add(EventKind::kImuBiasJump, jump.t, jump.t);
-    event.gyro_step_rad_s = jump.gyro;
-    event.accel_step_m_s2 = jump.accel;
-  }
-  for (const Teleport& teleport : drive.teleports()) {
-    SimulatedEvent& event = add(EventKind::kKidnap, teleport.t, teleport.t);
-    event.pose_before = teleport.before;
-    event.pose_after = teleport.after;
-  }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const auto& a, const auto& b) { return a.t0 < b.t0; });
-  return out;
 }
 
 TrueState Simulation::Parts::state(TimeNs t) const {

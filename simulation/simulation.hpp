@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,27 +9,12 @@
 #include "holdfast/core/sensor_data.hpp"
 #include "holdfast/io/point_cloud.hpp"
 #include "simulation/change/world_change.hpp"
-#include "simulation/event.hpp"
+#include "simulation/events/event.hpp"
 #include "simulation/scenario.hpp"
-#include "simulation/sensors/imu_model.hpp"
-#include "simulation/sensors/lidar_model.hpp"
+#include "simulation/simulation_options.hpp"
 #include "simulation/truth/true_geometry.hpp"
 
 namespace holdfast::simulation {
-
-struct SimulationOptions {
-  std::string scenario = "corridor";
-  std::uint64_t seed = 1;            ///< another drive, other noise, in the same world
-  std::optional<double> duration_s;  ///< length of the log; none: the scenario's whole route
-  std::vector<EventSpec> events;
-  ImuModel imu;
-  LidarModel lidar = LidarModel::rs16();
-  double speed_factor = 1;     ///< on the scenario's speed, turning rate and accelerations
-  double wobble_rad = 0;       ///< amplitude of roll, pitch and yaw at 1 to 3 Hz while moving
-  double map_sigma_m = 0.005;  ///< noise of the survey on each axis
-  double changed_share = 0;    ///< of the world's objects since the survey, 0 to 1
-  int threads = 1;             ///< the stream has the same bits for any number
-};
 
 /// The exact state behind the measurements.
 struct TrueState {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/event.hpp"
+#include "simulation/events/event.hpp"
 
 namespace holdfast::benchmarks {
 

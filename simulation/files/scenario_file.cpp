@@ -8,7 +8,7 @@
 
 #include "holdfast/io/yaml_block.hpp"
 #include "simulation/files/part_files.hpp"
-#include "simulation/sensors/lidar_file.hpp"
+#include "simulation/sensors/lidar/lidar_file.hpp"
 
 namespace holdfast::simulation {
 namespace {

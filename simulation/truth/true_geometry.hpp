@@ -4,7 +4,7 @@
 
 #include "holdfast/core/sensor_data.hpp"
 #include "simulation/motion/drive.hpp"
-#include "simulation/sensors/lidar_model.hpp"
+#include "simulation/sensors/lidar/lidar_model.hpp"
 #include "simulation/truth/segment_grid.hpp"
 #include "simulation/world/ray_caster.hpp"
 #include "simulation/world/walkers.hpp"

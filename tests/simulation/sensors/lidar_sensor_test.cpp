@@ -1,4 +1,4 @@
-#include "simulation/sensors/lidar_sensor.hpp"
+#include "simulation/sensors/lidar/lidar_sensor.hpp"
 
 #include <gtest/gtest.h>
 

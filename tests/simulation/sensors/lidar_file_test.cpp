@@ -1,4 +1,4 @@
-#include "simulation/sensors/lidar_file.hpp"
+#include "simulation/sensors/lidar/lidar_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "holdfast/core/result.hpp"
-#include "simulation/sensors/lidar_model.hpp"
+#include "simulation/sensors/lidar/lidar_model.hpp"
 
 namespace holdfast::simulation {
 
@@ -19,7 +19,7 @@ std::vector<std::string_view> lidar_names();
 /// The keys of such a file with defaults and ranges, in Markdown.
 std::string lidar_reference();
 
-/// The text of a file in simulation/sensors/lidars ("vlp16.yaml"), which was built in.
+/// The text of a file in simulation/sensors/lidar/lidars ("vlp16.yaml"), which was built in.
 std::string_view lidar_text(std::string_view file);
 
 }  // namespace holdfast::simulation

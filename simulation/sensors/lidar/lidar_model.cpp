@@ -1,4 +1,4 @@
-#include "simulation/sensors/lidar_model.hpp"
+#include "simulation/sensors/lidar/lidar_model.hpp"
 
 #include <numbers>
 

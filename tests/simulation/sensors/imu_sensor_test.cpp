@@ -1,4 +1,4 @@
-#include "simulation/sensors/imu_sensor.hpp"
+#include "simulation/sensors/imu/imu_sensor.hpp"
 
 #include <gtest/gtest.h>
 

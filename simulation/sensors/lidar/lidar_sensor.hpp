@@ -6,20 +6,13 @@
 
 #include "holdfast/core/parallel.hpp"
 #include "holdfast/core/sensor_data.hpp"
+#include "simulation/events/time_span.hpp"
 #include "simulation/motion/drive.hpp"
-#include "simulation/sensors/lidar_model.hpp"
+#include "simulation/sensors/lidar/lidar_model.hpp"
 #include "simulation/world/ray_caster.hpp"
 #include "simulation/world/walkers.hpp"
 
 namespace holdfast::simulation {
-
-/// A span of time, from the start of the log.
-struct TimeSpan {
-  TimeNs begin = 0;
-  TimeNs end = 0;  ///< the first time after it
-
-  bool contains(TimeNs t) const { return begin <= t && t < end; }
-};
 
 /// What a LiDAR looks at while the robot drives.
 struct Surroundings {

@@ -1,4 +1,4 @@
-#include "simulation/event.hpp"
+#include "simulation/events/event.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include "holdfast/core/random.hpp"
 #include "holdfast/core/sensor_data.hpp"
 #include "simulation/motion/trajectory.hpp"
-#include "simulation/sensors/imu_model.hpp"
+#include "simulation/sensors/imu/imu_model.hpp"
 
 namespace holdfast::simulation {
 
