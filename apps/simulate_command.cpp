@@ -32,6 +32,8 @@ struct SimulateArguments {
   std::string lidar = "rs16";
   std::string imu = "article";
   std::vector<std::string> faults;
+  bool wheel = false;
+  bool gnss = false;
   std::optional<double> range_noise_m;
   std::optional<double> map_noise_m;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
@@ -95,6 +97,8 @@ simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
   options.imu = *imu;
   const Status faults = apply_faults(arguments.faults, options);
   if (!faults) throw CommandFailed{2, "simulate: " + faults.error().message};
+  if (arguments.wheel) options.wheel.emplace();
+  if (arguments.gnss) options.gnss.emplace();
   options.lidar.range_sigma_m = arguments.range_noise_m.value_or(options.lidar.range_sigma_m);
   options.map_sigma_m = arguments.map_noise_m.value_or(options.map_sigma_m);
   options.threads = arguments.threads > 0 ? arguments.threads : 1;
@@ -145,6 +149,11 @@ void add_sensor_faults(CLI::App& command, SimulateArguments& arguments) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAMES");
+  command.add_flag("--wheel", arguments.wheel,
+                   "run.bag holds wheel odometry with slip on /wheel_odometry "
+                   "(nav_msgs/Odometry, 50 Hz)");
+  command.add_flag("--gnss", arguments.gnss,
+                   "run.bag holds positions with outages on /gnss (sensor_msgs/NavSatFix, 10 Hz)");
 }
 
 /// Options that make the drive harder than the scenario is.
@@ -208,7 +217,9 @@ void add_simulate_command(CLI::App& app) {
       ->add_option(
           "--event", arguments->events,
           "NAME@T0[+DURATION], seconds from the start: blind (empty clouds), lidar_off and "
-          "imu_off (no messages), each 2 s long by default; imu_bias_jump, kidnap; may be "
+          "imu_off (no messages), each 2 s long by default; imu_bias_jump, kidnap; clock_jump (of "
+          "the LiDAR's "
+          "stamps, for good unless it has a duration); may be "
           "given more than once")
       ->type_name("EVENT")
       ->allow_extra_args(false);

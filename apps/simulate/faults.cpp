@@ -19,11 +19,25 @@ struct Fault {
 
 void imu(SimulationOptions& options) { options.imu = options.imu.with_usual_faults(); }
 
+void clock(SimulationOptions& options) {
+  options.transport.lidar_clock = simulation::TransportModel::unsynchronised_clock();
+}
+
+void packets(SimulationOptions& options) { options.transport = options.transport.with_losses(); }
+
+void extrinsics(SimulationOptions& options) {
+  options.extrinsics_error = simulation::ExtrinsicsError::by_hand();
+}
+
 constexpr std::array kFaults = {
     Fault{"imu",
           "bias instability, scale, misalignment, saturation, rounding and vibration of an "
           "industrial MEMS",
           imu},
+    Fault{"clock", "the LiDAR's clock is off by some 5 ms, drifts by some 20 ppm and jitters",
+          clock},
+    Fault{"packets", "2 % of LiDAR packets and 1 % of IMU samples are lost", packets},
+    Fault{"extrinsics", "config.yaml states T_body_lidar 1 cm and 0.3 degrees off", extrinsics},
 };
 
 const Fault* find(std::string_view name) {

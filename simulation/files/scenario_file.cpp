@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "holdfast/io/yaml_block.hpp"
+#include "simulation/files/fault_reference.hpp"
 #include "simulation/files/part_files.hpp"
 #include "simulation/sensors/imu/imu_file.hpp"
 #include "simulation/sensors/lidar/lidar_file.hpp"
@@ -171,7 +172,7 @@ std::string scenario_reference() {
              "{}.\n\n{}",
              io::config_reference(fields), part_reference(), fmt::join(lidar_names(), ", "),
              lidar_reference()) +
-         "\n" + imu_reference();
+         "\n" + imu_reference() + "\n" + fault_reference();
 }
 
 }  // namespace holdfast::simulation
