@@ -10,8 +10,10 @@
 
 #include "apps/commands.hpp"
 #include "apps/progress_bar.hpp"
+#include "apps/simulate/faults.hpp"
 #include "simulation/files/scenario_file.hpp"
 #include "simulation/log_output.hpp"
+#include "simulation/sensors/imu/imu_file.hpp"
 #include "simulation/sensors/lidar/lidar_file.hpp"
 #include "simulation/simulation.hpp"
 
@@ -28,6 +30,10 @@ struct SimulateArguments {
   double speed_factor = 1;
   double wobble_deg = 0;
   std::string lidar = "rs16";
+  std::string imu = "article";
+  std::vector<std::string> faults;
+  bool wheel = false;
+  bool gnss = false;
   std::optional<double> range_noise_m;
   std::optional<double> map_noise_m;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
@@ -86,6 +92,13 @@ simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
   const auto lidar = simulation::make_lidar(arguments.lidar);
   if (!lidar) throw CommandFailed{2, "simulate: " + lidar.error().message};
   options.lidar = *lidar;
+  const auto imu = simulation::make_imu(arguments.imu);
+  if (!imu) throw CommandFailed{2, "simulate: " + imu.error().message};
+  options.imu = *imu;
+  const Status faults = apply_faults(arguments.faults, options);
+  if (!faults) throw CommandFailed{2, "simulate: " + faults.error().message};
+  if (arguments.wheel) options.wheel.emplace();
+  if (arguments.gnss) options.gnss.emplace();
   options.lidar.range_sigma_m = arguments.range_noise_m.value_or(options.lidar.range_sigma_m);
   options.map_sigma_m = arguments.map_noise_m.value_or(options.map_sigma_m);
   options.threads = arguments.threads > 0 ? arguments.threads : 1;
@@ -120,6 +133,27 @@ std::string lidar_help() {
   for (const std::string_view name : simulation::lidar_names()) names += std::string(name) + ", ";
   return names +
          "or a file that ends in .yaml and describes one (--reference says how; default rs16)";
+}
+
+std::string imu_help() {
+  std::string names;
+  for (const std::string_view name : simulation::imu_names()) names += std::string(name) + ", ";
+  return names +
+         "or a file that ends in .yaml and describes one (--reference says how; default article)";
+}
+
+/// Options of the IMU, and of what goes wrong with sensors.
+void add_sensor_faults(CLI::App& command, SimulateArguments& arguments) {
+  command.add_option("--imu", arguments.imu, imu_help())->type_name("NAME");
+  command.add_option("--faults", arguments.faults, faults_help())
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAMES");
+  command.add_flag("--wheel", arguments.wheel,
+                   "run.bag holds wheel odometry with slip on /wheel_odometry "
+                   "(nav_msgs/Odometry, 50 Hz)");
+  command.add_flag("--gnss", arguments.gnss,
+                   "run.bag holds positions with outages on /gnss (sensor_msgs/NavSatFix, 10 Hz)");
 }
 
 /// Options that make the drive harder than the scenario is.
@@ -183,11 +217,14 @@ void add_simulate_command(CLI::App& app) {
       ->add_option(
           "--event", arguments->events,
           "NAME@T0[+DURATION], seconds from the start: blind (empty clouds), lidar_off and "
-          "imu_off (no messages), each 2 s long by default; imu_bias_jump, kidnap; may be "
+          "imu_off (no messages), each 2 s long by default; imu_bias_jump, kidnap; clock_jump (of "
+          "the LiDAR's "
+          "stamps, for good unless it has a duration); may be "
           "given more than once")
       ->type_name("EVENT")
       ->allow_extra_args(false);
   add_hardships(*command, *arguments);
+  add_sensor_faults(*command, *arguments);
   command
       ->add_option("--threads", arguments->threads,
                    "threads for casting rays (default: all cores); the output does not depend "

@@ -9,6 +9,7 @@
 #include "simulation/events/event_schedule.hpp"
 #include "simulation/sensors/imu/imu_sensor.hpp"
 #include "simulation/sensors/lidar/lidar_sensor.hpp"
+#include "simulation/transport/losses.hpp"
 #include "simulation/world/survey.hpp"
 
 namespace holdfast::simulation {
@@ -42,6 +43,8 @@ struct Simulation::Parts {
   EventSchedule schedule;
   ImuSensor imu;
   LidarSensor lidar;
+  LidarClock lidar_clock;
+  std::vector<bool> lost_imu;  ///< by sample
   Surroundings around;
   std::vector<SimulatedEvent> events;
   std::optional<TrueGeometry> geometry;  ///< made when asked for
@@ -49,7 +52,9 @@ struct Simulation::Parts {
   std::size_t next_imu = 0;
   std::size_t next_scan = 0;    ///< the next to be cast
   std::optional<Scan> pending;  ///< cast but not yet handed out; times from the start of the log
+  std::size_t pending_index = 0;
   std::optional<TimeNs> first_pose_time;
+  TimeNs last_event = 0;
 
   Parts(Scenario the_scenario, std::optional<ChangedWorld> change,
         const SimulationOptions& the_options, Drive the_drive);
@@ -79,9 +84,12 @@ Simulation::Parts::Parts(Scenario the_scenario, std::optional<ChangedWorld> chan
           static_cast<double>(drive.duration()) * options.imu.rate_hz / 1e9 + 1 + 1e-9)),
       first_scan(from_seconds(RandomStream(options.seed, "lidar.phase").uniform(0.01, 0.06))),
       scans(0),
-      schedule(options.events, options.imu, options.seed),
+      schedule(options.events, options.imu, options.transport.lidar_clock, options.seed),
       imu(options.imu, options.seed, imu_samples, schedule.bias_jumps),
       lidar(options.lidar, options.seed),
+      lidar_clock(options.transport.lidar_clock, schedule.clock_jumps, options.seed),
+      lost_imu(draw_losses(options.transport.imu_samples, imu_samples,
+                           RandomStream(options.seed, "imu.losses"))),
       around{caster, scenario.world.materials, drive, walkers, schedule.blind} {
   scans =
       static_cast<std::size_t>(std::max<TimeNs>(log_end() - first_scan, 0) / options.lidar.period);
@@ -102,6 +110,10 @@ void Simulation::Parts::cast_pending() {
   while (next_scan < scans && is_silent(next_scan)) ++next_scan;
   if (next_scan == scans) return;
   pending = lidar.revolve(next_scan, scan_begin(next_scan), around, pool);
+  lose_packets(*pending,
+               {next_scan, scan_begin(next_scan), options.lidar.period, options.lidar.columns},
+               options.transport, options.seed);
+  pending_index = next_scan;
   if (!first_pose_time) first_pose_time = pending->end_time;
   ++next_scan;
 }
@@ -112,7 +124,8 @@ void Simulation::Parts::drop_silent_imu() {
     return std::any_of(schedule.imu_off.begin(), schedule.imu_off.end(),
                        [t](const TimeSpan& span) { return span.contains(t); });
   };
-  while (next_imu < imu_samples && is_off(static_cast<TimeNs>(next_imu) * imu.interval())) {
+  while (next_imu < imu_samples &&
+         (lost_imu[next_imu] || is_off(static_cast<TimeNs>(next_imu) * imu.interval()))) {
     take_imu();
   }
 }
@@ -121,6 +134,7 @@ ImuSample Simulation::Parts::take_imu() {
   const TimeNs t = static_cast<TimeNs>(next_imu) * imu.interval();
   ImuSample sample = imu.measure(next_imu, drive.at(t));
   sample.t = kEpoch + t;
+  last_event = t;
   ++next_imu;
   return sample;
 }
@@ -128,6 +142,8 @@ ImuSample Simulation::Parts::take_imu() {
 Scan Simulation::Parts::take_scan() {
   Scan scan = std::move(*pending);
   pending.reset();
+  last_event = scan.end_time;
+  lidar_clock.stamp(scan, pending_index);
   scan.stamp += kEpoch;
   scan.end_time += kEpoch;
   return scan;
@@ -187,6 +203,8 @@ Result<std::optional<SensorEvent>> Simulation::next() {
   return std::optional<SensorEvent>();
 }
 
+TimeNs Simulation::last_event_time() const { return kEpoch + parts_->last_event; }
+
 double Simulation::progress() const {
   return static_cast<double>(parts_->next_imu) / static_cast<double>(parts_->imu_samples);
 }
@@ -223,10 +241,32 @@ SE3 Simulation::initial_pose() {
   return parts_->drive.at(parts_->first_pose_time.value_or(0)).T_map_body;
 }
 
+std::vector<WheelSample> Simulation::wheel_samples() const {
+  const Parts& p = *parts_;
+  if (!p.options.wheel) return {};
+  const WheelOdometer wheels(*p.options.wheel, p.options.seed, p.log_end());
+  auto samples = wheels.samples(p.drive);
+  for (WheelSample& sample : samples) sample.t += kEpoch;
+  return samples;
+}
+
+std::vector<GnssSample> Simulation::gnss_samples() const {
+  const Parts& p = *parts_;
+  if (!p.options.gnss) return {};
+  const GnssReceiver receiver(*p.options.gnss, p.options.seed, p.log_end());
+  auto samples = receiver.samples(p.drive);
+  for (GnssSample& sample : samples) sample.t += kEpoch;
+  return samples;
+}
+
+const LidarClock& Simulation::lidar_clock() const { return parts_->lidar_clock; }
+
 std::vector<TrueReturn> Simulation::true_geometry(const Scan& scan) {
   edges();
   Scan since_start = scan;
   since_start.stamp -= kEpoch;
+  since_start.end_time -= kEpoch;
+  since_start = parts_->lidar_clock.in_true_time(since_start);
   return true_returns(since_start, parts_->options.lidar, parts_->drive, parts_->caster,
                       parts_->walkers, *parts_->geometry);
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/core/aiding_data.hpp"
 #include "holdfast/core/result.hpp"
 #include "holdfast/core/sensor_data.hpp"
 #include "holdfast/io/point_cloud.hpp"
@@ -12,6 +13,7 @@
 #include "simulation/events/event.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/simulation_options.hpp"
+#include "simulation/transport/lidar_clock.hpp"
 #include "simulation/truth/true_geometry.hpp"
 
 namespace holdfast::simulation {
@@ -29,8 +31,13 @@ struct TrueState {
 
 /// A robot that drives through a world, as a stream of sensor events in order of end time (IMU
 /// before scan at equal times), together with the truth. The IMU begins at start_time() and covers
-/// the end of the last scan, unless an imu_off takes samples away. Same scenario, options and seed:
-/// same bits, for any number of threads. Not thread-safe; uses its own worker threads.
+/// the end of the last scan, unless an imu_off or the transport takes samples away. Same scenario,
+/// options and seed: same bits, for any number of threads. Not thread-safe; uses its own worker
+/// threads.
+///
+/// All times are those of the IMU's clock, which shows the true time, except those in a Scan, which
+/// are the LiDAR's (options.transport.lidar_clock, clock_jump). Events come in order of the true
+/// time at which they end, whatever a scan's stamps say.
 class Simulation : public SensorSource {
  public:
   /// Errors: unknown scenario (with the list of known ones), an event outside the log, models that
@@ -45,6 +52,8 @@ class Simulation : public SensorSource {
 
   /// Never an Error.
   Result<std::optional<SensorEvent>> next() override;
+  /// True time at which what next() has handed out last was complete; start_time() before.
+  TimeNs last_event_time() const;
   double progress() const override;
 
   TimeNs start_time() const;
@@ -59,6 +68,14 @@ class Simulation : public SensorSource {
   std::vector<StampedPose> truth() const;
   /// T_map_body at the first scan's pose time (its last point). Casts that scan if next() has not.
   SE3 initial_pose();
+
+  /// What wheels and satellites tell over the whole log, in order of time; empty unless options ask
+  /// for them. Does not depend on next().
+  std::vector<WheelSample> wheel_samples() const;
+  std::vector<GnssSample> gnss_samples() const;
+
+  /// The LiDAR's clock as it was drawn; its times count from the start of the log.
+  const LidarClock& lidar_clock() const;
 
   /// The surfaces behind the returns of a scan of this simulation, one entry a point (also of a
   /// scan from which points were taken away). Edges are those of the world as driven; the first

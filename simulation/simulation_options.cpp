@@ -30,10 +30,27 @@ std::string hardship_complaint(const SimulationOptions& options) {
   return {};
 }
 
+/// Likewise of those that lose and misdate measurements.
+std::string transport_complaint(const TransportModel& transport) {
+  for (const LossModel* loss : {&transport.lidar_packets, &transport.imu_samples}) {
+    if (!(loss->lost_share >= 0 && loss->lost_share <= 0.5 && loss->mean_run >= 1)) {
+      return fmt::format("losses of a share of {} in runs of {}: expected 0 to 0.5, at least 1",
+                         loss->lost_share, loss->mean_run);
+    }
+  }
+  if (transport.columns_per_packet < 1) {
+    return fmt::format("{} columns in a packet: expected at least 1", transport.columns_per_packet);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string complaint(const Scenario& scenario, const SimulationOptions& options) {
   if (const std::string hard = hardship_complaint(options); !hard.empty()) return hard;
+  if (const std::string lossy = transport_complaint(options.transport); !lossy.empty()) {
+    return lossy;
+  }
   const double interval = 1e9 / options.imu.rate_hz;
   if (!(options.imu.rate_hz > 0) || std::abs(interval - std::round(interval)) > 1e-6) {
     return fmt::format("imu rate of {} Hz: expected a whole number of nanoseconds between samples",

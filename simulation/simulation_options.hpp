@@ -7,8 +7,12 @@
 
 #include "simulation/events/event.hpp"
 #include "simulation/scenario.hpp"
+#include "simulation/sensors/gnss/gnss_receiver.hpp"
 #include "simulation/sensors/imu/imu_model.hpp"
 #include "simulation/sensors/lidar/lidar_model.hpp"
+#include "simulation/sensors/wheel/wheel_odometer.hpp"
+#include "simulation/stated_extrinsics.hpp"
+#include "simulation/transport/transport_model.hpp"
 
 namespace holdfast::simulation {
 
@@ -19,11 +23,15 @@ struct SimulationOptions {
   std::vector<EventSpec> events;
   ImuModel imu;
   LidarModel lidar = LidarModel::rs16();
-  double speed_factor = 1;     ///< on the scenario's speed, turning rate and accelerations
-  double wobble_rad = 0;       ///< amplitude of roll, pitch and yaw at 1 to 3 Hz while moving
-  double map_sigma_m = 0.005;  ///< noise of the survey on each axis
-  double changed_share = 0;    ///< of the world's objects since the survey, 0 to 1
-  int threads = 1;             ///< the stream has the same bits for any number
+  TransportModel transport;
+  std::optional<WheelModel> wheel;   ///< none: the robot has no odometer
+  std::optional<GnssModel> gnss;     ///< none: no receiver
+  ExtrinsicsError extrinsics_error;  ///< of the T_body_lidar that config.yaml states
+  double speed_factor = 1;           ///< on the scenario's speed, turning rate and accelerations
+  double wobble_rad = 0;             ///< amplitude of roll, pitch and yaw at 1 to 3 Hz while moving
+  double map_sigma_m = 0.005;        ///< noise of the survey on each axis
+  double changed_share = 0;          ///< of the world's objects since the survey, 0 to 1
+  int threads = 1;                   ///< the stream has the same bits for any number
 };
 
 /// What is wrong with a drive through `scenario` with these options, empty when nothing is.

@@ -9,13 +9,15 @@
 namespace holdfast::simulation {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames = {"blind", "lidar_off", "imu_off",
-                                                    "imu_bias_jump", "kidnap"};
+constexpr std::array<std::string_view, 6> kNames = {"blind",         "lidar_off", "imu_off",
+                                                    "imu_bias_jump", "kidnap",    "clock_jump"};
 constexpr TimeNs kDefaultDuration = 2 * kSecond;
 
 bool lasts(EventKind kind) {
   return kind == EventKind::kBlind || kind == EventKind::kLidarOff || kind == EventKind::kImuOff;
 }
+
+bool may_last(EventKind kind) { return lasts(kind) || kind == EventKind::kClockJump; }
 
 Error bad_event(const std::string& text, const std::string& found) {
   return {
@@ -43,6 +45,7 @@ std::string details_json(const SimulatedEvent& event) {
     case EventKind::kImuBiasJump:
       return fmt::format(",\"gyro_step_rad_s\":{},\"accel_step_m_s2\":{}",
                          vector_json(event.gyro_step_rad_s), vector_json(event.accel_step_m_s2));
+    case EventKind::kClockJump: return fmt::format(",\"step_s\":{:.9f}", event.clock_step_s);
     case EventKind::kKidnap: break;
   }
   const double distance = (event.pose_after.translation - event.pose_before.translation).norm();
@@ -76,7 +79,7 @@ Result<EventSpec> parse_event(const std::string& text) {
   if (lasts(event.kind)) event.duration = kDefaultDuration;
   if (plus == std::string::npos) return event;
   const std::string duration = text.substr(plus + 1);
-  if (!lasts(event.kind)) {
+  if (!may_last(event.kind)) {
     return bad_event(text, fmt::format("a duration, which {} does not take", name));
   }
   if (!parse_seconds(duration, event.duration) || event.duration <= 0) {

@@ -17,6 +17,7 @@ enum class EventKind {
   kImuOff,       ///< no IMU sample within the interval: no messages
   kImuBiasJump,  ///< both IMU biases jump by fixed sizes in a direction drawn per seed, and stay
   kKidnap,       ///< the body stands at another place of the route at once; the IMU feels nothing
+  kClockJump,    ///< the LiDAR's clock steps by a size drawn per seed, for good or for a while
 };
 
 /// An event that was asked for; times count from the start of the log.
@@ -35,22 +36,24 @@ struct SimulatedEvent {
   SE3 pose_after;                                             ///< T_map_body at t0, after a kidnap
   Eigen::Vector3d gyro_step_rad_s = Eigen::Vector3d::Zero();  ///< of an imu_bias_jump
   Eigen::Vector3d accel_step_m_s2 = Eigen::Vector3d::Zero();  ///< of an imu_bias_jump
+  double clock_step_s = 0;  ///< of a clock_jump: what the LiDAR's clock is ahead of before
 };
 
 /// Name on the command line and in events.jsonl: "blind", "lidar_off", "imu_off", "imu_bias_jump",
-/// "kidnap".
+/// "kidnap", "clock_jump".
 std::string_view event_name(EventKind kind);
 
 /// Names of all events, in the order of EventKind.
 std::vector<std::string_view> event_names();
 
 /// Parses `NAME@T0[+DURATION]`, seconds from the start of the log. `blind`, `lidar_off` and
-/// `imu_off` without a duration last 2 s; the others happen at T0 and take no duration. The error
-/// lists the known names or shows the form expected.
+/// `imu_off` without a duration last 2 s; a `clock_jump` without one is for good, with one the
+/// clock steps back after it; the others happen at T0 and take no duration. The error lists the
+/// known names or shows the form expected.
 Result<EventSpec> parse_event(const std::string& text);
 
 /// One line of events.jsonl, without the end of line: t0 and t1 in seconds with 9 decimals, the
-/// name, and what belongs to the kind (poses and size of a kidnap, steps of a bias jump).
+/// name, and what belongs to the kind (poses and size of a kidnap, steps of a bias or clock jump).
 std::string event_json(const SimulatedEvent& event);
 
 }  // namespace holdfast::simulation

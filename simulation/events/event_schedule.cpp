@@ -36,11 +36,12 @@ std::vector<TimeNs> starts_of(EventKind kind, const std::vector<EventSpec>& even
 }
 
 EventSchedule::EventSchedule(const std::vector<EventSpec>& events, const ImuModel& imu,
-                             std::uint64_t seed)
+                             const LidarClockModel& lidar_clock, std::uint64_t seed)
     : blind(spans_of(EventKind::kBlind, events)),
       lidar_off(spans_of(EventKind::kLidarOff, events)),
       imu_off(spans_of(EventKind::kImuOff, events)),
-      bias_jumps(draw_jumps(events, imu, seed)) {}
+      bias_jumps(draw_jumps(events, imu, seed)),
+      clock_jumps(draw_clock_jumps(events, lidar_clock, seed)) {}
 
 std::vector<SimulatedEvent> EventSchedule::took_place(const Drive& drive, TimeNs epoch,
                                                       TimeNs length) const {
@@ -59,6 +60,10 @@ std::vector<SimulatedEvent> EventSchedule::took_place(const Drive& drive, TimeNs
     SimulatedEvent& event = add(EventKind::kImuBiasJump, jump.t, jump.t);
     event.gyro_step_rad_s = jump.gyro;
     event.accel_step_m_s2 = jump.accel;
+  }
+  for (const ClockJump& jump : clock_jumps) {
+    const TimeNs end = jump.is_for_good() ? jump.span.begin : jump.span.end;
+    add(EventKind::kClockJump, jump.span.begin, end).clock_step_s = to_seconds(jump.step);
   }
   for (const Teleport& teleport : drive.teleports()) {
     SimulatedEvent& event = add(EventKind::kKidnap, teleport.t, teleport.t);

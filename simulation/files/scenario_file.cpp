@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "holdfast/io/yaml_block.hpp"
+#include "simulation/files/fault_reference.hpp"
 #include "simulation/files/part_files.hpp"
+#include "simulation/sensors/imu/imu_file.hpp"
 #include "simulation/sensors/lidar/lidar_file.hpp"
 
 namespace holdfast::simulation {
@@ -149,23 +151,28 @@ std::string scenario_reference() {
   Fields fields;
   io::collect_fields("drive", style, fields);
   return fmt::format(
-      "# Scenario files\n\n"
-      "`holdfast simulate FILE.yaml --out DIR` drives through a world that a file describes:\n\n"
-      "```yaml\nname: shed\nworld:\n  - floor: {{min: [0, 0], max: [20, 10]}}\n"
-      "  - wall: {{from: [0, 0], to: [20, 0], top: 4, openings: [{{start: 3, width: 1.2}}]}}\n"
-      "  - repeat:\n      times: 4\n      step: [4, 0, 0]\n      parts:\n"
-      "        - cylinder: {{base: [4, 5, 0], radius: 0.25, height: 4}}\n"
-      "route:\n  radius_m: 1.5\n  corners: [[2, 2], [18, 2], [18, 8], [2, 8]]\n"
-      "drive: {{speed_m_s: 1.5}}\n```\n\n"
-      "Lengths are metres, z is up, and walls are seen from the left of the way from their first\n"
-      "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or\n"
-      "`[x, y, z, radius_m]`. `people` is a list of a `route` and a `speed_m_s` each.\n"
-      "[garage.yaml](../simulation/scenarios/garage.yaml) is a whole one.\n\n"
-      "{}\n## Parts of the world\n\n{}"
-      "# Lidar files\n\n"
-      "`--lidar FILE.yaml` takes a spinning LiDAR from a file; `--lidar NAME` one of {}.\n\n{}",
-      io::config_reference(fields), part_reference(), fmt::join(lidar_names(), ", "),
-      lidar_reference());
+             "# Scenario files\n\n"
+             "`holdfast simulate FILE.yaml --out DIR` drives through a world that a file "
+             "describes:\n\n"
+             "```yaml\nname: shed\nworld:\n  - floor: {{min: [0, 0], max: [20, 10]}}\n"
+             "  - wall: {{from: [0, 0], to: [20, 0], top: 4, openings: [{{start: 3, width: "
+             "1.2}}]}}\n"
+             "  - repeat:\n      times: 4\n      step: [4, 0, 0]\n      parts:\n"
+             "        - cylinder: {{base: [4, 5, 0], radius: 0.25, height: 4}}\n"
+             "route:\n  radius_m: 1.5\n  corners: [[2, 2], [18, 2], [18, 8], [2, 8]]\n"
+             "drive: {{speed_m_s: 1.5}}\n```\n\n"
+             "Lengths are metres, z is up, and walls are seen from the left of the way from their "
+             "first\n"
+             "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or\n"
+             "`[x, y, z, radius_m]`. `people` is a list of a `route` and a `speed_m_s` each.\n"
+             "[garage.yaml](../simulation/scenarios/garage.yaml) is a whole one.\n\n"
+             "{}\n## Parts of the world\n\n{}"
+             "# Lidar files\n\n"
+             "`--lidar FILE.yaml` takes a spinning LiDAR from a file; `--lidar NAME` one of "
+             "{}.\n\n{}",
+             io::config_reference(fields), part_reference(), fmt::join(lidar_names(), ", "),
+             lidar_reference()) +
+         "\n" + imu_reference() + "\n" + fault_reference();
 }
 
 }  // namespace holdfast::simulation

@@ -71,6 +71,25 @@ TEST_F(HardDrive, AnotherLidarSeesOtherPoints) {
   EXPECT_THAT(wrong.out, HasSubstr("known are: rs16, vlp16"));
 }
 
+TEST_F(HardDrive, FaultsAreOfTheSensorsAndNotOfTheDrive) {
+  const auto plain = drive("plain", "");
+  for (const char* fault :
+       {"--imu n200", "--faults imu", "--faults clock", "--faults packets",
+        "--faults imu,clock,packets,extrinsics", "--wheel --gnss", "--event clock_jump@2+1"}) {
+    const auto faulty = drive("faulty", fault);
+    EXPECT_FALSE(same(plain, faulty, "run.bag")) << fault;
+    EXPECT_TRUE(same(plain, faulty, "truth.tum")) << fault;
+    EXPECT_TRUE(same(plain, faulty, "map.pcd")) << fault;
+  }
+  const auto off = drive("off", "--faults extrinsics");
+  EXPECT_TRUE(same(plain, off, "run.bag"));
+  EXPECT_FALSE(same(plain, off, "config.yaml"));
+  const auto wrong = expect_run("simulate office --faults imu,weather --out " + (out / "wrong"), 2);
+  EXPECT_THAT(wrong.out, HasSubstr("unknown fault 'weather'; known are: imu, clock"));
+  const auto strange = expect_run("simulate office --imu n300 --out " + (out / "wrong"), 2);
+  EXPECT_THAT(strange.out, HasSubstr("known are: article, n200"));
+}
+
 TEST_F(HardDrive, AChangedWorldIsAnotherOnTheSameWay) {
   const auto plain = drive("plain", "");
   EXPECT_EQ(last.out.find("changed since the survey"), std::string::npos) << last.out;

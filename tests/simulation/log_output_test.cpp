@@ -1,5 +1,6 @@
 #include "simulation/log_output.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,9 +9,13 @@
 #include <fstream>
 #include <iterator>
 
+#include "holdfast/io/bag/bag_file.hpp"
 #include "holdfast/io/cloud_file.hpp"
 #include "holdfast/io/log_file.hpp"
+#include "holdfast/io/ros/navsat_message.hpp"
+#include "holdfast/io/ros/odometry_message.hpp"
 #include "holdfast/io/tum_file.hpp"
+#include "simulation/stated_extrinsics.hpp"
 #include "tests/simulation/support.hpp"
 
 namespace holdfast::simulation {
@@ -159,6 +164,94 @@ TEST_F(LogOutput, ConfigAndMapHaveTheNoiseAskedFor) {
   for (const Eigen::Vector3f& p : simulation->survey_map().points) {
     const Eigen::Vector3f to_wall = p.cwiseMin(Eigen::Vector3f(12, 8, 4) - p).cwiseAbs();
     ASSERT_LT(to_wall.minCoeff(), 1e-5F) << "on a wall";
+  }
+}
+
+TEST_F(LogOutput, WheelsAndSatellitesHaveTopicsOfTheirOwnInOrderOfTime) {
+  SimulationOptions asked = options(2);
+  asked.wheel.emplace();
+  asked.gnss.emplace();
+  asked.gnss->outages_per_minute = 30;
+  asked.transport.imu_samples = {0.3, 5};  // gaps, over which the others are still in order
+  const auto simulation = make(asked);
+  ASSERT_TRUE(write_log(*simulation, folder_ / "run", [](double, std::string_view) {}));
+  const auto wheel = simulation->wheel_samples();
+  const auto gnss = simulation->gnss_samples();
+  ASSERT_EQ(wheel.size(), 150U);
+  ASSERT_EQ(gnss.size(), 31U);
+  auto bag = io::bag::BagFile::open(folder_ / "run" / "run.bag");
+  ASSERT_TRUE(bag) << bag.error().message;
+  std::uint64_t lost = 0;
+  std::size_t wheels = 0;
+  std::size_t fixes = 0;
+  std::pair<std::uint32_t, std::uint32_t> last_place;
+  for (const auto& place : bag->list_messages({true, true, true, true}, lost)) {
+    const auto in_file = std::pair(place.chunk, place.offset);
+    EXPECT_GE(in_file, last_place) << "written in the order of time";
+    last_place = in_file;
+    const std::string& topic = bag->connections()[place.connection].topic;
+    const auto message = bag->read(place);
+    ASSERT_TRUE(message);
+    if (topic == "/wheel_odometry") {
+      const auto sample = io::ros::parse_odometry(*message);
+      ASSERT_TRUE(sample);
+      EXPECT_EQ(sample->t, wheel[wheels].t);
+      EXPECT_EQ(sample->speed_m_s, wheel[wheels].speed_m_s);
+      EXPECT_EQ(sample->yaw_rate_rad_s, wheel[wheels].yaw_rate_rad_s);
+      EXPECT_EQ(sample->T_odom_body.translation, wheel[wheels].T_odom_body.translation);
+      EXPECT_NEAR(sample->speed_sigma_m_s, wheel[wheels].speed_sigma_m_s, 1e-15);
+      ++wheels;
+    } else if (topic == "/gnss") {
+      const auto sample = io::ros::parse_navsat(*message);
+      ASSERT_TRUE(sample);
+      EXPECT_EQ(sample->t, gnss[fixes].t);
+      EXPECT_EQ(sample->has_fix, gnss[fixes].has_fix);
+      EXPECT_EQ(std::isnan(sample->latitude_deg), !sample->has_fix);
+      EXPECT_TRUE(!sample->has_fix || sample->longitude_deg == gnss[fixes].longitude_deg);
+      ++fixes;
+    }
+  }
+  EXPECT_EQ(lost, 0U);
+  EXPECT_EQ(wheels, wheel.size());
+  EXPECT_EQ(fixes, gnss.size());
+  EXPECT_TRUE(io::open_log(folder_ / "run" / "run.bag", {})) << "one cloud and one IMU topic";
+  EXPECT_THAT(content(folder_ / "run" / "config.yaml"), HasSubstr("# gnss: map origin at"));
+}
+
+TEST_F(LogOutput, RecordsScansAtTheirTrueTimeWhateverTheLidarsClockSays) {
+  SimulationOptions asked = options(2);
+  asked.transport.lidar_clock.offset_sigma_s = 3;
+  const auto right = make(options(2));
+  const auto wrong = make(asked);
+  ASSERT_TRUE(write_log(*right, folder_ / "right", [](double, std::string_view) {}));
+  ASSERT_TRUE(write_log(*wrong, folder_ / "wrong", [](double, std::string_view) {}));
+  const auto places = [&](const char* name) {
+    auto bag = io::bag::BagFile::open(folder_ / name / "run.bag");
+    std::uint64_t lost = 0;
+    return bag->list_messages({true, true}, lost);
+  };
+  const auto of_right = places("right");
+  const auto of_wrong = places("wrong");
+  ASSERT_EQ(of_right.size(), of_wrong.size());
+  for (std::size_t i = 0; i < of_right.size(); ++i) ASSERT_EQ(of_right[i].time, of_wrong[i].time);
+  EXPECT_THAT(
+      content(folder_ / "wrong" / "config.yaml"),
+      HasSubstr(fmt::format("# lidar_clock: ahead by {:.9f} s", wrong->lidar_clock().offset_s())));
+  EXPECT_EQ(content(folder_ / "right" / "truth.tum"), content(folder_ / "wrong" / "truth.tum"));
+}
+
+TEST_F(LogOutput, ConfigMayStateAnExtrinsicThatIsOff) {
+  SimulationOptions asked = options(1);
+  asked.extrinsics_error = {0.01, 0.005};
+  const auto simulation = make(asked);
+  const std::string text = robot_config(*simulation);
+  EXPECT_THAT(text, HasSubstr("\n# true_T_body_lidar: [0.1, 0, 0.15, "));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("\nT_body_lidar: [0.1, 0, 0.15, ")));
+  const SE3& truth = asked.lidar.T_body_lidar;
+  for (std::uint64_t seed = 1; seed < 5; ++seed) {
+    const SE3 off = truth.inverse() * stated_extrinsics(truth, asked.extrinsics_error, seed);
+    EXPECT_NEAR(off.translation.norm(), 0.01, 1e-15);
+    EXPECT_NEAR(so3::log(off.rotation).norm(), 0.005, 1e-15);
   }
 }
 

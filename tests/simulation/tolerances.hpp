@@ -38,4 +38,13 @@ inline double integrated_position(double t, double step, double wobble = 0) {
 /// 5 standard deviations of a chi-square distribution divided by n.
 inline double variance_error(double n) { return 5 * std::sqrt(2.0 / n); }
 
+/// How far an Allan variance from `n` differences of neighbouring clusters may lie from the true
+/// one, relative to it. Neighbouring differences are correlated by -1/2 (white noise) to 1/4 (a
+/// walk), their squares by at most 1/4 on either side: as good as n / 1.5 independent ones.
+inline double allan_variance(double n) { return variance_error(n / 1.5); }
+
+/// What a sum over the `n` samples of a cluster leaves out of its integral, relative to the
+/// variance: an end of half a sample on either side.
+inline double allan_sampling(double n) { return 1 / n; }
+
 }  // namespace holdfast::tolerances

@@ -9,9 +9,15 @@ inline constexpr std::string_view kPointCloud2Type = "sensor_msgs/PointCloud2";
 inline constexpr std::string_view kPointCloud2Md5 = "1158d486dd51d683ce2f1be655c3c181";
 inline constexpr std::string_view kImuType = "sensor_msgs/Imu";
 inline constexpr std::string_view kImuMd5 = "6a62c6daae103f4ff57a132d6f95cec2";
+inline constexpr std::string_view kOdometryType = "nav_msgs/Odometry";
+inline constexpr std::string_view kOdometryMd5 = "cd5e73d190d741a2f92e81eda573aca7";
+inline constexpr std::string_view kNavSatFixType = "sensor_msgs/NavSatFix";
+inline constexpr std::string_view kNavSatFixMd5 = "2d3a8cd499b9b4a0249fb98fd05cfa48";
 
 /// The message's definition and those of all messages in it, without comments.
 extern const std::string_view kPointCloud2Definition;
 extern const std::string_view kImuDefinition;
+extern const std::string_view kOdometryDefinition;
+extern const std::string_view kNavSatFixDefinition;
 
 }  // namespace holdfast::io::ros

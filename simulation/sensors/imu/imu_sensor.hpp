@@ -6,7 +6,9 @@
 #include "holdfast/core/random.hpp"
 #include "holdfast/core/sensor_data.hpp"
 #include "simulation/motion/trajectory.hpp"
+#include "simulation/sensors/imu/axis_distortion.hpp"
 #include "simulation/sensors/imu/imu_model.hpp"
+#include "simulation/sensors/imu/vibration.hpp"
 
 namespace holdfast::simulation {
 
@@ -17,7 +19,8 @@ struct BiasJump {
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();
 };
 
-/// Measures angular rate and specific force with white noise and walking biases.
+/// Measures angular rate and specific force with white noise, walking biases and the faults of its
+/// model.
 class ImuSensor {
  public:
   /// `samples` are taken, at k / rate from the start of the log. `jumps` in order of time.
@@ -29,11 +32,15 @@ class ImuSensor {
 
   TimeNs interval() const { return interval_; }
 
+  /// What walks, jumps and flickers: all of the bias that an estimator could follow.
   struct Bias {
     Eigen::Vector3d gyro;
     Eigen::Vector3d accel;
   };
   const Bias& bias(std::size_t sample) const { return biases_[sample]; }
+
+  const AxisDistortion& gyro() const { return gyro_; }
+  const AxisDistortion& accelerometer() const { return accelerometer_; }
 
   /// Sample `sample` of a body in `motion`; to be called once for each sample, in order. The time
   /// is left for the caller to set.
@@ -43,6 +50,9 @@ class ImuSensor {
   ImuModel model_;
   TimeNs interval_;
   std::vector<Bias> biases_;
+  AxisDistortion gyro_;
+  AxisDistortion accelerometer_;
+  Vibration vibration_;
   RandomStream gyro_noise_;
   RandomStream accel_noise_;
 };

@@ -120,6 +120,24 @@ TEST_F(BagRoundTrip, TheSameInputGivesTheSameBytes) {
   }
 }
 
+TEST_F(BagRoundTrip, WheelsAndSatellitesNeedATopic) {
+  auto none = BagWriter::create(folder / "none.bag", {});
+  EXPECT_THAT((*none)->write(WheelSample()).error().message, HasSubstr("no topic"));
+  EXPECT_THAT((*none)->write(GnssSample()).error().message, HasSubstr("no topic"));
+  BagWriter::Topics topics;
+  topics.wheel = topics.imu;
+  const auto doubled = BagWriter::create(folder / "doubled.bag", topics);
+  ASSERT_FALSE(doubled);
+  EXPECT_THAT(doubled.error().message, HasSubstr("'/imu' is named twice"));
+  topics.wheel = {};
+  topics.gnss = "/fix";
+  auto gnss = BagWriter::create(folder / "gnss.bag", topics);
+  EXPECT_TRUE((*gnss)->write(imu_at(kStart)));
+  EXPECT_TRUE((*gnss)->write(GnssSample{.t = kStart + 1}));
+  EXPECT_FALSE((*gnss)->write(WheelSample{.t = kStart + 1}));
+  EXPECT_TRUE((*gnss)->close());
+}
+
 TEST_F(BagRoundTrip, CompressionMakesTheFileSmaller) {
   std::vector<SensorEvent> events;
   for (int i = 0; i < 2000; ++i) events.emplace_back(imu_at(kStart + i));

@@ -22,6 +22,8 @@ TEST(Event, IsParsedFromNameStartAndDuration) {
   EXPECT_EQ(parse_event("lidar_off@4+0.5")->kind, EventKind::kLidarOff);
   EXPECT_EQ(parse_event("imu_off@4")->kind, EventKind::kImuOff);
   EXPECT_EQ(parse_event("imu_off@4")->duration, 2 * kSecond);
+  EXPECT_EQ(parse_event("clock_jump@4")->duration, 0) << "for good";
+  EXPECT_EQ(parse_event("clock_jump@4+3")->duration, 3 * kSecond);
 }
 
 TEST(Event, ErrorsShowFormNamesAndWhatWasFound) {
@@ -31,7 +33,7 @@ TEST(Event, ErrorsShowFormNamesAndWhatWasFound) {
     ASSERT_FALSE(event) << text;
     EXPECT_THAT(event.error().message, HasSubstr("NAME@T0[+DURATION]"));
     EXPECT_THAT(event.error().message,
-                HasSubstr("blind, lidar_off, imu_off, imu_bias_jump, kidnap"));
+                HasSubstr("blind, lidar_off, imu_off, imu_bias_jump, kidnap, clock_jump"));
   }
   EXPECT_THAT(parse_event("teleport@3").error().message, HasSubstr("found the name 'teleport'"));
 }
@@ -43,6 +45,15 @@ TEST(Event, IsWrittenWithExactTimes) {
   event.t1 = 1'700'000'013'000'000'000;
   EXPECT_EQ(event_json(event),
             R"({"t0":1700000012.345678901,"t1":1700000013.000000000,"event":"blind"})");
+}
+
+TEST(Event, AClockJumpSaysItsSize) {
+  SimulatedEvent event;
+  event.kind = EventKind::kClockJump;
+  event.t0 = event.t1 = 5 * kSecond;
+  event.clock_step_s = -0.0423;
+  EXPECT_EQ(event_json(event), R"({"t0":5.000000000,"t1":5.000000000,"event":"clock_jump",)"
+                               R"("step_s":-0.042300000})");
 }
 
 TEST(Event, AKidnapSaysFromWhereToWhere) {
