@@ -10,6 +10,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/progress_bar.hpp"
+#include "simulation/faults.hpp"
 #include "simulation/files/scenario_file.hpp"
 #include "simulation/log_output.hpp"
 #include "simulation/sensors/lidar/lidar_file.hpp"
@@ -30,6 +31,8 @@ struct SimulateArguments {
   std::string lidar = "rs16";
   std::optional<double> range_noise_m;
   std::optional<double> map_noise_m;
+  std::string faults;
+  simulation::Weather weather;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
   bool list = false;
   bool reference = false;
@@ -88,6 +91,11 @@ simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
   options.lidar = *lidar;
   options.lidar.range_sigma_m = arguments.range_noise_m.value_or(options.lidar.range_sigma_m);
   options.map_sigma_m = arguments.map_noise_m.value_or(options.map_sigma_m);
+  options.weather = arguments.weather;
+  if (!arguments.faults.empty()) {
+    const Status applied = simulation::apply_faults(arguments.faults, options);
+    if (!applied) throw CommandFailed{2, "simulate: " + applied.error().message};
+  }
   options.threads = arguments.threads > 0 ? arguments.threads : 1;
   return options;
 }
@@ -120,6 +128,28 @@ std::string lidar_help() {
   for (const std::string_view name : simulation::lidar_names()) names += std::string(name) + ", ";
   return names +
          "or a file that ends in .yaml and describes one (--reference says how; default rs16)";
+}
+
+std::string faults_help() {
+  std::string help = "comma list of what real sensors do wrong, in usual sizes (default: nothing)";
+  for (const simulation::FaultPreset& preset : simulation::fault_presets()) {
+    help += "; " + std::string(preset.name) + ": " + std::string(preset.summary);
+  }
+  return help;
+}
+
+/// Faults of the sensors, and the air that they look through.
+void add_faults(CLI::App& command, SimulateArguments& arguments) {
+  command.add_option("--faults", arguments.faults, faults_help())->type_name("NAMES");
+  command
+      .add_option("--rain", arguments.weather.rain_mm_h,
+                  "rain in millimetres an hour, which the LiDAR sees and looks through; 0 to 200 "
+                  "(default 0; 20 is heavy)")
+      ->type_name("MM_H");
+  command
+      .add_option("--visibility", arguments.weather.visibility_m,
+                  "in fog or dust, in metres; 5 to 100000 (default: clear air)")
+      ->type_name("M");
 }
 
 /// Options that make the drive harder than the scenario is.
@@ -188,6 +218,7 @@ void add_simulate_command(CLI::App& app) {
       ->type_name("EVENT")
       ->allow_extra_args(false);
   add_hardships(*command, *arguments);
+  add_faults(*command, *arguments);
   command
       ->add_option("--threads", arguments->threads,
                    "threads for casting rays (default: all cores); the output does not depend "

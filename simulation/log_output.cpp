@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <sstream>
+
 #include "holdfast/io/atomic_output.hpp"
 #include "holdfast/io/bag_writer.hpp"
 #include "holdfast/io/cloud_file.hpp"
+#include "holdfast/io/config_io.hpp"
 #include "holdfast/io/tum_file.hpp"
 
 namespace holdfast::simulation {
@@ -37,6 +40,24 @@ std::string events_text(const Simulation& simulation) {
   return text;
 }
 
+/// What the drive has that the keys of a configuration do not say, as comments.
+std::string hardships_text(const SimulationOptions& options) {
+  std::string text;
+  LidarFaults faults = options.lidar.faults;
+  if (!faults.none()) {
+    std::vector<io::FieldRef> fields;
+    io::collect_fields("", faults, fields);
+    text += "# lidar faults, beside lidar.range_sigma_m:\n";
+    std::istringstream lines(io::write_config(fields));
+    for (std::string line; std::getline(lines, line);) text += "#   " + line + "\n";
+  }
+  if (!options.weather.is_clear()) {
+    text += fmt::format("# weather: rain {} mm/h, visibility {} m (0: clear)\n",
+                        options.weather.rain_mm_h, options.weather.visibility_m);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string pose_text(const SE3& pose) {
@@ -54,6 +75,7 @@ std::string robot_config(Simulation& simulation) {
   return fmt::format(
       "# simulated: scenario {}, seed {}\n"
       "# initial_pose: {}\n"
+      "{}"
       "T_body_lidar: [{}, {}, {}, {}, {}, {}, {}]\n"
       "imu:\n"
       "  gyro_noise_density: {}\n"
@@ -63,8 +85,9 @@ std::string robot_config(Simulation& simulation) {
       "lidar:\n"
       "  range_sigma_m: {}\n",
       simulation.scenario().name, simulation.options().seed, pose_text(simulation.initial_pose()),
-      p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), imu.gyro_noise_density,
-      imu.accel_noise_density, imu.gyro_bias_walk, imu.accel_bias_walk, lidar.range_sigma_m);
+      hardships_text(simulation.options()), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(),
+      imu.gyro_noise_density, imu.accel_noise_density, imu.gyro_bias_walk, imu.accel_bias_walk,
+      lidar.range_sigma_m);
 }
 
 Status write_log(Simulation& simulation, const std::filesystem::path& folder,

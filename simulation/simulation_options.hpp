@@ -9,6 +9,7 @@
 #include "simulation/scenario.hpp"
 #include "simulation/sensors/imu/imu_model.hpp"
 #include "simulation/sensors/lidar/lidar_model.hpp"
+#include "simulation/sensors/lidar/returns/air.hpp"
 
 namespace holdfast::simulation {
 
@@ -19,6 +20,7 @@ struct SimulationOptions {
   std::vector<EventSpec> events;
   ImuModel imu;
   LidarModel lidar = LidarModel::rs16();
+  Weather weather;             ///< that the LiDAR looks through
   double speed_factor = 1;     ///< on the scenario's speed, turning rate and accelerations
   double wobble_rad = 0;       ///< amplitude of roll, pitch and yaw at 1 to 3 Hz while moving
   double map_sigma_m = 0.005;  ///< noise of the survey on each axis

@@ -38,4 +38,8 @@ inline double integrated_position(double t, double step, double wobble = 0) {
 /// 5 standard deviations of a chi-square distribution divided by n.
 inline double variance_error(double n) { return 5 * std::sqrt(2.0 / n); }
 
+/// How far a count of independent events may lie from its mean, the sum of their probabilities p:
+/// 5 standard deviations, for `variance` the sum of p (1 - p); one event more, as counts are whole.
+inline double count_error(double variance) { return 5 * std::sqrt(variance) + 1; }
+
 }  // namespace holdfast::tolerances
