@@ -10,7 +10,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/progress_bar.hpp"
-#include "apps/simulate/faults.hpp"
+#include "simulation/faults.hpp"
 #include "simulation/files/scenario_file.hpp"
 #include "simulation/log_output.hpp"
 #include "simulation/sensors/imu/imu_file.hpp"
@@ -31,11 +31,12 @@ struct SimulateArguments {
   double wobble_deg = 0;
   std::string lidar = "rs16";
   std::string imu = "article";
-  std::vector<std::string> faults;
   bool wheel = false;
   bool gnss = false;
   std::optional<double> range_noise_m;
   std::optional<double> map_noise_m;
+  std::string faults;
+  simulation::Weather weather;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
   bool list = false;
   bool reference = false;
@@ -95,12 +96,15 @@ simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
   const auto imu = simulation::make_imu(arguments.imu);
   if (!imu) throw CommandFailed{2, "simulate: " + imu.error().message};
   options.imu = *imu;
-  const Status faults = apply_faults(arguments.faults, options);
-  if (!faults) throw CommandFailed{2, "simulate: " + faults.error().message};
   if (arguments.wheel) options.wheel.emplace();
   if (arguments.gnss) options.gnss.emplace();
   options.lidar.range_sigma_m = arguments.range_noise_m.value_or(options.lidar.range_sigma_m);
   options.map_sigma_m = arguments.map_noise_m.value_or(options.map_sigma_m);
+  options.weather = arguments.weather;
+  if (!arguments.faults.empty()) {
+    const Status applied = simulation::apply_faults(arguments.faults, options);
+    if (!applied) throw CommandFailed{2, "simulate: " + applied.error().message};
+  }
   options.threads = arguments.threads > 0 ? arguments.threads : 1;
   return options;
 }
@@ -142,18 +146,32 @@ std::string imu_help() {
          "or a file that ends in .yaml and describes one (--reference says how; default article)";
 }
 
-/// Options of the IMU, and of what goes wrong with sensors.
-void add_sensor_faults(CLI::App& command, SimulateArguments& arguments) {
+std::string faults_help() {
+  std::string help = "comma list of what real sensors do wrong, in usual sizes (default: nothing)";
+  for (const simulation::FaultPreset& preset : simulation::fault_presets()) {
+    help += "; " + std::string(preset.name) + ": " + std::string(preset.summary);
+  }
+  return help;
+}
+
+/// Further sensors, faults of all of them, and the air that the LiDAR looks through.
+void add_sensors(CLI::App& command, SimulateArguments& arguments) {
   command.add_option("--imu", arguments.imu, imu_help())->type_name("NAME");
-  command.add_option("--faults", arguments.faults, faults_help())
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("NAMES");
+  command.add_option("--faults", arguments.faults, faults_help())->type_name("NAMES");
   command.add_flag("--wheel", arguments.wheel,
                    "run.bag holds wheel odometry with slip on /wheel_odometry "
                    "(nav_msgs/Odometry, 50 Hz)");
   command.add_flag("--gnss", arguments.gnss,
                    "run.bag holds positions with outages on /gnss (sensor_msgs/NavSatFix, 10 Hz)");
+  command
+      .add_option("--rain", arguments.weather.rain_mm_h,
+                  "rain in millimetres an hour, which the LiDAR sees and looks through; 0 to 200 "
+                  "(default 0; 20 is heavy)")
+      ->type_name("MM_H");
+  command
+      .add_option("--visibility", arguments.weather.visibility_m,
+                  "in fog or dust, in metres; 5 to 100000 (default: clear air)")
+      ->type_name("M");
 }
 
 /// Options that make the drive harder than the scenario is.
@@ -224,7 +242,7 @@ void add_simulate_command(CLI::App& app) {
       ->type_name("EVENT")
       ->allow_extra_args(false);
   add_hardships(*command, *arguments);
-  add_sensor_faults(*command, *arguments);
+  add_sensors(*command, *arguments);
   command
       ->add_option("--threads", arguments->threads,
                    "threads for casting rays (default: all cores); the output does not depend "

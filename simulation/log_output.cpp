@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 #include <variant>
 #include <vector>
 
 #include "holdfast/io/atomic_output.hpp"
 #include "holdfast/io/bag_writer.hpp"
 #include "holdfast/io/cloud_file.hpp"
+#include "holdfast/io/config_io.hpp"
 #include "holdfast/io/tum_file.hpp"
 #include "simulation/stated_extrinsics.hpp"
 
@@ -94,10 +96,28 @@ std::string pose_list(const SE3& pose) {
                      q.w());
 }
 
+/// What is hard for the LiDAR and the keys of a configuration do not say.
+std::string lidar_remarks(const SimulationOptions& options) {
+  std::string text;
+  LidarFaults faults = options.lidar.faults;
+  if (!faults.none()) {
+    std::vector<io::FieldRef> fields;
+    io::collect_fields("", faults, fields);
+    text += "# lidar faults, beside lidar.range_sigma_m:\n";
+    std::istringstream lines(io::write_config(fields));
+    for (std::string line; std::getline(lines, line);) text += "#   " + line + "\n";
+  }
+  if (!options.weather.is_clear()) {
+    text += fmt::format("# weather: rain {} mm/h, visibility {} m (0: clear)\n",
+                        options.weather.rain_mm_h, options.weather.visibility_m);
+  }
+  return text;
+}
+
 /// What a user could only measure: comments on what the options made wrong or added.
 std::string remarks(const Simulation& simulation) {
   const SimulationOptions& options = simulation.options();
-  std::string text;
+  std::string text = lidar_remarks(options);
   if (!options.extrinsics_error.is_none()) {
     text += "# true_T_body_lidar: " + pose_list(options.lidar.T_body_lidar) + "\n";
   }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "holdfast/core/parallel.hpp"
 #include "simulation/events/event_schedule.hpp"
@@ -67,6 +69,7 @@ struct Simulation::Parts {
   void drop_silent_imu();
   ImuSample take_imu();
   Scan take_scan();
+  std::vector<ReturnKind> kinds_of(const Scan& scan);
   TrueState state(TimeNs t) const;
 };
 
@@ -86,7 +89,7 @@ Simulation::Parts::Parts(Scenario the_scenario, std::optional<ChangedWorld> chan
       scans(0),
       schedule(options.events, options.imu, options.transport.lidar_clock, options.seed),
       imu(options.imu, options.seed, imu_samples, schedule.bias_jumps),
-      lidar(options.lidar, options.seed),
+      lidar(options.lidar, options.seed, options.weather),
       lidar_clock(options.transport.lidar_clock, schedule.clock_jumps, options.seed),
       lost_imu(draw_losses(options.transport.imu_samples, imu_samples,
                            RandomStream(options.seed, "imu.losses"))),
@@ -147,6 +150,28 @@ Scan Simulation::Parts::take_scan() {
   scan.stamp += kEpoch;
   scan.end_time += kEpoch;
   return scan;
+}
+
+/// Where the points of a scan of this log come from. The scan is measured again, and its points
+/// found by time and ring.
+std::vector<ReturnKind> Simulation::Parts::kinds_of(const Scan& scan) {
+  std::vector<ReturnKind> kinds(scan.points.size(), ReturnKind::kSurface);
+  const bool all_surfaces = options.lidar.faults.none() && options.weather.is_clear();
+  if (scan.points.empty() || all_surfaces) return kinds;
+  const auto index = static_cast<std::size_t>(std::max<TimeNs>(
+      (scan.stamp + scan.points.front().time_offset_ns - first_scan) / options.lidar.period, 0));
+  const auto [again, known] = lidar.revolve_with_kinds(index, scan_begin(index), around, pool);
+  std::map<std::pair<TimeNs, std::uint16_t>, ReturnKind> kind_at;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const ScanPoint& point = again.points[i];
+    kind_at[{again.stamp + point.time_offset_ns, point.ring}] = known[i];
+  }
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const ScanPoint& point = scan.points[i];
+    const auto found = kind_at.find({scan.stamp + point.time_offset_ns, point.ring});
+    if (found != kind_at.end()) kinds[i] = found->second;
+  }
+  return kinds;
 }
 
 TrueState Simulation::Parts::state(TimeNs t) const {
@@ -267,8 +292,8 @@ std::vector<TrueReturn> Simulation::true_geometry(const Scan& scan) {
   since_start.stamp -= kEpoch;
   since_start.end_time -= kEpoch;
   since_start = parts_->lidar_clock.in_true_time(since_start);
-  return true_returns(since_start, parts_->options.lidar, parts_->drive, parts_->caster,
-                      parts_->walkers, *parts_->geometry);
+  return true_returns(since_start, parts_->kinds_of(since_start), parts_->options.lidar,
+                      parts_->drive, parts_->caster, parts_->walkers, *parts_->geometry);
 }
 
 const std::vector<Segment>& Simulation::edges() {

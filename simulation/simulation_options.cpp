@@ -22,6 +22,7 @@ std::string hardship_complaint(const SimulationOptions& options) {
   if (!(options.speed_factor >= 0.1 && options.speed_factor <= 10)) {
     return fmt::format("{} times the speed: expected 0.1 to 10", options.speed_factor);
   }
+  if (const std::string wrong = complaint(options.weather); !wrong.empty()) return wrong;
   constexpr double kMostWobble = 30 * std::numbers::pi / 180;  // pitch stays far from 90 degrees
   if (!(options.wobble_rad >= 0 && options.wobble_rad <= kMostWobble)) {
     return fmt::format("wobble of {} degrees: expected 0 to 30",

@@ -10,6 +10,7 @@
 #include "simulation/sensors/gnss/gnss_receiver.hpp"
 #include "simulation/sensors/imu/imu_model.hpp"
 #include "simulation/sensors/lidar/lidar_model.hpp"
+#include "simulation/sensors/lidar/returns/air.hpp"
 #include "simulation/sensors/wheel/wheel_odometer.hpp"
 #include "simulation/stated_extrinsics.hpp"
 #include "simulation/transport/transport_model.hpp"
@@ -23,6 +24,7 @@ struct SimulationOptions {
   std::vector<EventSpec> events;
   ImuModel imu;
   LidarModel lidar = LidarModel::rs16();
+  Weather weather;  ///< that the LiDAR looks through
   TransportModel transport;
   std::optional<WheelModel> wheel;   ///< none: the robot has no odometer
   std::optional<GnssModel> gnss;     ///< none: no receiver

@@ -168,8 +168,12 @@ std::string scenario_reference() {
              "[garage.yaml](../simulation/scenarios/garage.yaml) is a whole one.\n\n"
              "{}\n## Parts of the world\n\n{}"
              "# Lidar files\n\n"
-             "`--lidar FILE.yaml` takes a spinning LiDAR from a file; `--lidar NAME` one of "
-             "{}.\n\n{}",
+             "`--lidar FILE.yaml` takes a LiDAR from a file; `--lidar NAME` one of {}.\n"
+             "The block `faults` says what it does wrong, by default nothing; `--faults lidar` "
+             "gives any\n"
+             "LiDAR the usual sizes. Rain and dust (`--rain`, `--visibility`) are none of the "
+             "sensor's:\n"
+             "they weaken returns, which limits the reach, and return some light themselves.\n\n{}",
              io::config_reference(fields), part_reference(), fmt::join(lidar_names(), ", "),
              lidar_reference()) +
          "\n" + imu_reference() + "\n" + fault_reference();

@@ -98,9 +98,19 @@ std::vector<Ray> rays_of(const Scan& scan, const LidarModel& lidar, const Drive&
   return rays;
 }
 
+TrueReturn no_surface(ReturnKind kind, const Ray& ray, const ScanPoint& point) {
+  TrueReturn truth;
+  truth.point_map = ray.origin + Vector3d(point.x, point.y, point.z).norm() * ray.direction;
+  truth.normal_map.setZero();
+  truth.edge_distance_m = TrueGeometry::kReach;
+  truth.kind = kind;
+  return truth;
+}
+
 }  // namespace
 
-std::vector<TrueReturn> true_returns(const Scan& scan, const LidarModel& lidar, const Drive& drive,
+std::vector<TrueReturn> true_returns(const Scan& scan, const std::vector<ReturnKind>& kinds,
+                                     const LidarModel& lidar, const Drive& drive,
                                      const RayCaster& caster, const Walkers& walkers,
                                      const TrueGeometry& geometry) {
   const std::vector<Ray> rays = rays_of(scan, lidar, drive);
@@ -115,6 +125,10 @@ std::vector<TrueReturn> true_returns(const Scan& scan, const LidarModel& lidar, 
     }
     const Ray& ray = rays[i];
     TrueReturn& truth = out[i];
+    if (kinds[i] != ReturnKind::kSurface) {
+      truth = no_surface(kinds[i], ray, scan.points[i]);
+      continue;
+    }
     double range = std::min<double>(hits.range[lane], lidar.max_range_m);
     const TimeNs t = scan.stamp + scan.points[i].time_offset_ns;
     truth.person = people.meets(ray, t, range, truth.normal_map);

@@ -5,6 +5,7 @@
 #include "holdfast/core/sensor_data.hpp"
 #include "simulation/motion/drive.hpp"
 #include "simulation/sensors/lidar/lidar_model.hpp"
+#include "simulation/sensors/lidar/return_kind.hpp"
 #include "simulation/truth/segment_grid.hpp"
 #include "simulation/world/ray_caster.hpp"
 #include "simulation/world/walkers.hpp"
@@ -21,6 +22,11 @@ struct TrueReturn {
   Eigen::Vector3d edge_along_map =
       Eigen::Vector3d::Zero();  ///< unit; zero without an edge in reach
   bool person = false;          ///< met someone walking: no edges are looked for
+  /// Only kSurface has a true surface. Of other returns point_map is where the measured range puts
+  /// them, the normal is zero, and no edges are looked for.
+  ReturnKind kind = ReturnKind::kSurface;
+
+  bool is_surface() const { return kind == ReturnKind::kSurface; }
 };
 
 /// What a world's surfaces are like, for judging features: edges as `true_edges` defines them, and
@@ -52,8 +58,9 @@ class TrueGeometry {
 
 /// Casts the ray of each return of `scan` again, from where the LiDAR was at the return's own time,
 /// and says what it met: one entry a point, in the order of the points. Times of the scan count
-/// from the start of the log.
-std::vector<TrueReturn> true_returns(const Scan& scan, const LidarModel& lidar, const Drive& drive,
+/// from the start of the log. `kinds` says of each point where it comes from.
+std::vector<TrueReturn> true_returns(const Scan& scan, const std::vector<ReturnKind>& kinds,
+                                     const LidarModel& lidar, const Drive& drive,
                                      const RayCaster& caster, const Walkers& walkers,
                                      const TrueGeometry& geometry);
 

@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,8 +19,24 @@ struct RayCaster::Embree {
   }
 };
 
+namespace {
+
+std::vector<Eigen::Vector3f> normals_of(const World& world) {
+  std::vector<Eigen::Vector3f> normals;
+  normals.reserve(world.triangles.size());
+  for (const auto& [a, b, c] : world.triangles) {
+    const Eigen::Vector3f& from = world.vertices[a];
+    normals.push_back((world.vertices[b] - from).cross(world.vertices[c] - from).normalized());
+  }
+  return normals;
+}
+
+}  // namespace
+
 RayCaster::RayCaster(const World& world)
-    : embree_(std::make_unique<Embree>()), material_of_(world.material_of) {
+    : embree_(std::make_unique<Embree>()),
+      material_of_(world.material_of),
+      normals_(normals_of(world)) {
   // One thread builds the tree, so that it is the same tree every time.
   embree_->device = rtcNewDevice("threads=1");
   embree_->scene = rtcNewScene(embree_->device);

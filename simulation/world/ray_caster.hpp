@@ -35,6 +35,9 @@ class RayCaster {
   /// First hits between `min_range` and `max_range` metres.
   void cast(const RayPacket& rays, float min_range, float max_range, HitPacket& hits) const;
 
+  /// Of a triangle of the world, on its front, unit length (zero for one without an area).
+  const Eigen::Vector3f& normal(std::uint32_t triangle) const { return normals_[triangle]; }
+
   /// True when nothing stands between `from` and `to` (but for the last 2 mm).
   bool is_visible(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
@@ -42,6 +45,7 @@ class RayCaster {
   struct Embree;
   std::unique_ptr<Embree> embree_;
   std::vector<std::uint16_t> material_of_;
+  std::vector<Eigen::Vector3f> normals_;
 };
 
 }  // namespace holdfast::simulation

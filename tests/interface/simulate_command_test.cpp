@@ -85,7 +85,7 @@ TEST_F(HardDrive, FaultsAreOfTheSensorsAndNotOfTheDrive) {
   EXPECT_TRUE(same(plain, off, "run.bag"));
   EXPECT_FALSE(same(plain, off, "config.yaml"));
   const auto wrong = expect_run("simulate office --faults imu,weather --out " + (out / "wrong"), 2);
-  EXPECT_THAT(wrong.out, HasSubstr("unknown fault 'weather'; known are: imu, clock"));
+  EXPECT_THAT(wrong.out, HasSubstr("unknown fault 'weather'; known are: lidar, imu, clock"));
   const auto strange = expect_run("simulate office --imu n300 --out " + (out / "wrong"), 2);
   EXPECT_THAT(strange.out, HasSubstr("known are: article, n200"));
 }
@@ -121,9 +121,26 @@ TEST_F(HardDrive, NoiseOfTheRangesIsInTheLogAndNoiseOfTheMapInTheMap) {
   EXPECT_FALSE(same(plain, rough_map, "map.pcd"));
 }
 
+TEST_F(HardDrive, FaultsAndWeatherAreInTheLogAndInItsConfiguration) {
+  const auto plain = drive("plain", "");
+  const auto faulty = drive("faulty", "--faults lidar");
+  const auto wet = drive("wet", "--rain 20 --visibility 200");
+  EXPECT_THAT(content(faulty + "/config.yaml"), HasSubstr("#   mixed_pixels: true"));
+  EXPECT_THAT(content(wet + "/config.yaml"),
+              HasSubstr("# weather: rain 20 mm/h, visibility 200 m"));
+  for (const auto& hard : {faulty, wet}) {
+    EXPECT_FALSE(same(plain, hard, "run.bag"));
+    EXPECT_TRUE(same(plain, hard, "truth.tum"));
+    EXPECT_TRUE(same(plain, hard, "map.pcd"));
+  }
+  const auto wrong = expect_run("simulate office --faults lidra --out " + (out / "wrong"), 2);
+  EXPECT_THAT(wrong.out, HasSubstr("unknown fault 'lidra'; known are: lidar"));
+}
+
 TEST_F(HardDrive, HardshipsOutsideOfTheirRangesAreWrongUsage) {
-  for (const char* bad : {"--changed 101", "--changed -1", "--changed much", "--speed 0",
-                          "--speed 11", "--wobble 31", "--range-noise -1", "--map-noise -1"}) {
+  for (const char* bad :
+       {"--changed 101", "--changed -1", "--changed much", "--speed 0", "--speed 11", "--wobble 31",
+        "--range-noise -1", "--map-noise -1", "--rain -1", "--rain 201", "--visibility 1"}) {
     expect_run("simulate office --duration 1 --out " + out / "sim" + " " + bad, 2);
   }
   EXPECT_TRUE(out.names().empty());

@@ -47,4 +47,8 @@ inline double allan_variance(double n) { return variance_error(n / 1.5); }
 /// variance: an end of half a sample on either side.
 inline double allan_sampling(double n) { return 1 / n; }
 
+/// How far a count of independent events may lie from its mean, the sum of their probabilities p:
+/// 5 standard deviations, for `variance` the sum of p (1 - p); one event more, as counts are whole.
+inline double count_error(double variance) { return 5 * std::sqrt(variance) + 1; }
+
 }  // namespace holdfast::tolerances

@@ -15,10 +15,12 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kMostBeams = 1024;
-constexpr std::array<std::string_view, 5> kNames = {"rs16", "vlp16", "hdl64", "os1_64", "os1_128"};
+constexpr std::array<std::string_view, 7> kNames = {"rs16",   "vlp16",   "helios16", "hdl64",
+                                                    "os1_64", "os1_128", "mid360"};
 
-/// A spinning LiDAR as a file holds it.
+/// A LiDAR as a file holds it, but for its faults.
 struct LidarFields {
+  std::string pattern = "spinning";
   std::vector<double> elevations_deg;
   int beams = 16;
   double lowest_deg = -15, highest_deg = 15;
@@ -27,10 +29,20 @@ struct LidarFields {
   double rate_hz = 10;
   double min_range_m = 0.4, max_range_m = 100;
   double range_sigma_m = 0.02;
+  double turn_hz = RosettePattern().turn_hz, nod_hz = RosettePattern().nod_hz;
+  double divergence_mrad = 3;
+  double pulse_length_m = LidarModel().pulse_length_m;
+  double reach_at_10_percent_m = LidarModel().reach_at_10_percent_m;
   SE3 T_body_lidar = LidarModel::rs16().T_body_lidar;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
+    FieldDoc pattern{
+        "spinning: all frames have the same rays; rosette: the head turns with `turn_hz` while "
+        "`beams` lines nod, each over its share of the field from `lowest_deg` to `highest_deg`, "
+        "with `columns` shots of each line a frame and `rate_hz` frames"};
+    pattern.choices = "spinning|rosette";
+    visit("pattern", self.pattern, pattern);
     visit(
         "elevations_deg", self.elevations_deg,
         FieldDoc{"of the beams above the horizon, in the order in which they fire; an empty list: "
@@ -46,15 +58,33 @@ struct LidarFields {
     visit("min_range_m", self.min_range_m, FieldDoc{"nearer surfaces return nothing", 0, 100});
     visit("max_range_m", self.max_range_m, FieldDoc{"farther surfaces return nothing", 0.1, 10000});
     visit("range_sigma_m", self.range_sigma_m, FieldDoc{"noise of a range", 0, 1});
+    visit("turn_hz", self.turn_hz,
+          FieldDoc{"of a rosette; at most `rate_hz`, and frames repeat unless it is no neat share "
+                   "of it",
+                   0.1, 100});
+    visit("nod_hz", self.nod_hz, FieldDoc{"of a rosette", 0.1, 10000});
+    visit("divergence_mrad", self.divergence_mrad,
+          FieldDoc{"full angle of a beam; what faults make of it, see below", 0.01, 50});
+    visit("pulse_length_m", self.pulse_length_m,
+          FieldDoc{"half of the way of light during a pulse: surfaces along a beam that are nearer "
+                   "to each other are not told apart",
+                   0.01, 10});
+    visit("reach_at_10_percent_m", self.reach_at_10_percent_m,
+          FieldDoc{"range at which half of the returns of a surface of 10 % that is square to the "
+                   "beam are seen in clear air; only with `limited_reach` or in weather",
+                   0.1, 10000});
     visit("T_body_lidar", self.T_body_lidar, FieldDoc{"where it is mounted on the IMU"});
   }
 };
 
+/// Of the lines of a rosette: the middles of their bands.
 std::vector<double> elevations_of(const LidarFields& file) {
-  if (!file.elevations_deg.empty()) return file.elevations_deg;
+  const bool is_rosette = file.pattern == "rosette";
+  if (!file.elevations_deg.empty() && !is_rosette) return file.elevations_deg;
   std::vector<double> even;
   for (int i = 0; i < file.beams; ++i) {
-    const double u = file.beams > 1 ? static_cast<double>(i) / (file.beams - 1) : 0.5;
+    double u = file.beams > 1 ? static_cast<double>(i) / (file.beams - 1) : 0.5;
+    if (is_rosette) u = (i + 0.5) / file.beams;
     even.push_back(std::lerp(file.lowest_deg, file.highest_deg, u));
   }
   return even;
@@ -71,7 +101,31 @@ std::vector<std::uint16_t> ranks_of(const std::vector<double>& values) {
   return ranks;
 }
 
+/// What is wrong with a rosette, empty when nothing is.
+std::string rosette_complaint(const LidarFields& file) {
+  if (!file.elevations_deg.empty()) {
+    return "elevations_deg: a rosette has a field from lowest_deg to highest_deg instead";
+  }
+  if (file.highest_deg <= file.lowest_deg) return "highest_deg: expected more than lowest_deg";
+  if (file.turn_hz > file.rate_hz) {
+    return fmt::format("turn_hz: expected at most rate_hz, {}, found {}", file.rate_hz,
+                       file.turn_hz);
+  }
+  return {};
+}
+
+void add_pattern(const LidarFields& file, LidarModel& model) {
+  if (file.pattern == "spinning") return;
+  const double half_band_deg = (file.highest_deg - file.lowest_deg) / (2 * file.beams);
+  model.rosette = RosettePattern{file.turn_hz, file.nod_hz, half_band_deg * kDegree};
+}
+
 Result<LidarModel> model_of(const LidarFields& file, const std::string& name) {
+  if (file.pattern == "rosette") {
+    if (const std::string wrong = rosette_complaint(file); !wrong.empty()) {
+      return Error{name + ": " + wrong};
+    }
+  }
   const std::vector<double> elevations = elevations_of(file);
   LidarModel model;
   model.columns = file.columns;
@@ -101,16 +155,24 @@ Result<LidarModel> model_of(const LidarFields& file, const std::string& name) {
   model.max_range_m = file.max_range_m;
   model.range_sigma_m = file.range_sigma_m;
   model.T_body_lidar = file.T_body_lidar;
+  model.divergence_rad = 1e-3 * file.divergence_mrad;
+  model.pulse_length_m = file.pulse_length_m;
+  model.reach_at_10_percent_m = file.reach_at_10_percent_m;
+  add_pattern(file, model);
   return model;
 }
 
 Result<LidarModel> read(const Result<YAML::Node>& document, const std::string& name) {
   if (!document) return document.error();
   LidarFields file;
+  LidarFaults faults;
   std::vector<io::FieldRef> fields;
   io::collect_fields("", file, fields);
+  io::collect_fields("faults", faults, fields);
   if (auto done = io::read_block(*document, name, fields); !done) return done.error();
-  return model_of(file, name);
+  auto model = model_of(file, name);
+  if (model) model->faults = faults;
+  return model;
 }
 
 }  // namespace
@@ -133,7 +195,9 @@ Result<LidarModel> make_lidar(const std::string& name) {
 std::string lidar_reference() {
   LidarFields file;
   std::vector<io::FieldRef> fields;
+  LidarFaults faults;
   io::collect_fields("lidar", file, fields);
+  io::collect_fields("faults", faults, fields);
   return io::config_reference(fields);
 }
 

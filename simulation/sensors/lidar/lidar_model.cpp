@@ -34,6 +34,7 @@ LidarModel LidarModel::os1_128() {
     model.beams.push_back({kField * (ring / (kBeams - 1.0) - 0.5) * kDegree, 0, ring});
   }
   model.columns = 1024;
+  model.reach_at_10_percent_m = 45;  // its data sheet (for 9 of 10 returns)
   model.T_body_lidar = mounting();
   return model;
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "holdfast/core/random.hpp"
+#include "simulation/sensors/lidar/scan_pattern.hpp"
 
 namespace holdfast::simulation {
 namespace {
@@ -55,27 +56,27 @@ struct LidarSensor::Chunk {
   std::vector<float> cos_incidence;     ///< likewise
   std::vector<std::uint16_t> material;  ///< likewise
   std::vector<ScanPoint> points;        ///< time offsets from the start of the revolution
+  Beams beams;                          ///< with faults or weather
+  std::vector<ReturnKind> kinds;        ///< of the points; likewise
 
   std::size_t columns() const { return end - begin; }
+  void keep_ray(std::size_t column, std::size_t beam, const Vector3f& origin, const Vector3f& d) {
+    const std::size_t at = (column - begin) * beams.per_column + beam;
+    beams.origin[at] = origin;
+    beams.direction[at] = d;
+  }
   RandomStream stream(std::uint64_t seed, const char* purpose) const {
     return {seed, std::string(purpose) + "." + std::to_string(scan) + "." + std::to_string(index)};
   }
 };
 
-LidarSensor::LidarSensor(const LidarModel& model, std::uint64_t seed) : model_(model), seed_(seed) {
+LidarSensor::LidarSensor(const LidarModel& model, std::uint64_t seed, const Weather& weather)
+    : model_(model),
+      seed_(seed),
+      returns_(ReturnModel::create(model, weather)),
+      column_times_(column_times(model)),
+      directions_(ray_directions(model, 0)) {
   assert(!model.beams.empty() && model.columns > 0);
-  for (int column = 0; column < model.columns; ++column) {
-    column_times_.push_back(model.period * column / model.columns);
-    for (const LidarBeam& beam : model.beams) {
-      const double turned = static_cast<double>(column_times_.back() + beam.fire_offset) /
-                            static_cast<double>(model.period);
-      const double azimuth = -2 * std::numbers::pi * turned;
-      const double level = std::cos(beam.elevation_rad);
-      const Vector3d direction(level * std::cos(azimuth), level * std::sin(azimuth),
-                               std::sin(beam.elevation_rad));
-      directions_.push_back(direction.cast<float>());
-    }
-  }
 }
 
 TimeNs LidarSensor::fire_time(std::size_t column, std::size_t beam) const {
@@ -118,6 +119,7 @@ void LidarSensor::cast_chunk(Chunk& chunk, const Surroundings& around) const {
         rays.dx[lane] = d.x();
         rays.dy[lane] = d.y();
         rays.dz[lane] = d.z();
+        if (returns_) chunk.keep_ray(column, beam, origin, d);
       }
       around.caster.cast(rays, min_range, max_range, hits);
       for (std::size_t lane = 0; lane < RayPacket::kSize && first + lane < chunk.end; ++lane) {
@@ -125,6 +127,7 @@ void LidarSensor::cast_chunk(Chunk& chunk, const Surroundings& around) const {
         chunk.range[at] = hits.range[lane];
         chunk.cos_incidence[at] = hits.cos_incidence[lane];
         chunk.material[at] = hits.material[lane];
+        if (returns_) chunk.beams.triangle[at] = hits.triangle[lane];
       }
     }
   }
@@ -201,9 +204,66 @@ void LidarSensor::measure_chunk(Chunk& chunk, const Surroundings& around) const 
   }
 }
 
-Scan LidarSensor::revolve(std::size_t index, TimeNs begin, const Surroundings& around,
-                          WorkerPool& pool) const {
+void LidarSensor::prepare_chunk(Chunk& chunk, const Surroundings& around) const {
+  const std::size_t rays = chunk.columns() * model_.beams.size();
+  for (std::size_t column = chunk.begin; column < chunk.end; ++column) {
+    chunk.poses.push_back(column_pose(around.drive, chunk.scan_begin + column_times_[column]));
+  }
+  chunk.range.resize(rays);
+  chunk.cos_incidence.resize(rays);
+  chunk.material.resize(rays);
+  if (!returns_) return;
+  chunk.beams.per_column = model_.beams.size();
+  chunk.beams.origin.resize(rays);
+  chunk.beams.direction.resize(rays);
+  chunk.beams.triangle.resize(rays);
+}
+
+/// What the axes of the beams met, in the order of firing, and what those of the columns next to
+/// each chunk did.
+void LidarSensor::keep_echoes(std::vector<Chunk>& chunks) const {
+  for (Chunk& chunk : chunks) {
+    for (std::size_t i = 0; i < chunk.range.size(); ++i) {
+      chunk.beams.echoes.push_back(
+          {chunk.range[i], chunk.cos_incidence[i], 1, chunk.material[i], ReturnKind::kSurface});
+    }
+  }
+  const auto beams = static_cast<std::ptrdiff_t>(model_.beams.size());
+  for (std::size_t i = 0; i + 1 < chunks.size(); ++i) {
+    const std::vector<Echo>& here = chunks[i].beams.echoes;
+    const std::vector<Echo>& next = chunks[i + 1].beams.echoes;
+    chunks[i + 1].beams.before.assign(here.end() - beams, here.end());
+    chunks[i].beams.after.assign(next.begin(), next.begin() + beams);
+  }
+}
+
+void LidarSensor::measure_spoilt(Chunk& chunk, const Surroundings& around) const {
   const std::size_t beams = model_.beams.size();
+  const Materials materials(around.materials);
+  const auto stream = [&](const char* purpose) { return chunk.stream(seed_, purpose); };
+  returns_->spoil(chunk.beams, around.caster, materials, stream);
+  RandomStream noise = stream("lidar.range_noise");
+  for (std::size_t i = 0; i < chunk.beams.echoes.size(); ++i) {
+    const double drawn = noise.normal();
+    const Echo& echo = chunk.beams.echoes[i];
+    if (!echo.is_there()) continue;
+    const std::size_t column = chunk.begin + i / beams;
+    const std::size_t beam = i % beams;
+    const TimeNs offset = fire_time(column, beam);
+    if (is_blind(around.blind, chunk.scan_begin + offset)) continue;
+    const double range = echo.range + range_sigma(model_, echo.range, echo.cos_incidence) * drawn;
+    const Vector3d point = range * directions_[column * beams + beam].cast<double>();
+    const double intensity = std::round(255 * returns_->brightness(echo, materials));
+    chunk.points.push_back({static_cast<float>(point.x()), static_cast<float>(point.y()),
+                            static_cast<float>(point.z()), static_cast<float>(intensity),
+                            static_cast<std::int32_t>(offset), model_.beams[beam].ring});
+    chunk.kinds.push_back(echo.kind);
+  }
+}
+
+std::vector<LidarSensor::Chunk> LidarSensor::cast(std::size_t index, TimeNs begin,
+                                                  const Surroundings& around,
+                                                  WorkerPool& pool) const {
   std::vector<Chunk> chunks(chunk_count(column_times_.size(), kChunkColumns));
   const auto work = [&](std::size_t chunk_index, std::size_t first, std::size_t last) {
     Chunk& chunk = chunks[chunk_index];
@@ -212,32 +272,49 @@ Scan LidarSensor::revolve(std::size_t index, TimeNs begin, const Surroundings& a
     chunk.begin = first;
     chunk.end = last;
     chunk.scan_begin = begin;
-    for (std::size_t column = first; column < last; ++column) {
-      chunk.poses.push_back(column_pose(around.drive, begin + column_times_[column]));
-    }
-    chunk.range.resize(chunk.columns() * beams);
-    chunk.cos_incidence.resize(chunk.columns() * beams);
-    chunk.material.resize(chunk.columns() * beams);
+    prepare_chunk(chunk, around);
     cast_chunk(chunk, around);
     if (around.walkers.size() > 0) cast_walkers(chunk, around);
-    measure_chunk(chunk, around);
+    if (!returns_) measure_chunk(chunk, around);
   };
   for_each_chunk(pool, column_times_.size(), kChunkColumns, work);
+  if (!returns_) return chunks;
+  // Edges are looked for across the borders of chunks: all must have been cast.
+  keep_echoes(chunks);
+  pool.run(chunks.size(), [&](std::size_t i) { measure_spoilt(chunks[i], around); });
+  return chunks;
+}
 
-  Scan scan;
+LidarSensor::Revolution LidarSensor::revolve_with_kinds(std::size_t index, TimeNs begin,
+                                                        const Surroundings& around,
+                                                        WorkerPool& pool) const {
+  if (model_.rosette && frame_ != index) {
+    LidarSensor later = *this;
+    later.frame_ = index;
+    later.directions_ = ray_directions(model_, index);
+    return later.revolve_with_kinds(index, begin, around, pool);
+  }
+  Revolution out;
+  Scan& scan = out.scan;
   scan.has_ring = true;
   scan.has_point_times = true;
   scan.stamp = begin;
   scan.end_time = begin + model_.period;
-  for (const Chunk& chunk : chunks) {
+  for (const Chunk& chunk : cast(index, begin, around, pool)) {
     scan.points.insert(scan.points.end(), chunk.points.begin(), chunk.points.end());
+    out.kinds.insert(out.kinds.end(), chunk.kinds.begin(), chunk.kinds.end());
   }
-  if (scan.points.empty()) return scan;
+  if (scan.points.empty()) return out;
   const std::int32_t first = scan.points.front().time_offset_ns;
   for (ScanPoint& point : scan.points) point.time_offset_ns -= first;
   scan.stamp = begin + first;
   scan.end_time = scan.stamp + scan.points.back().time_offset_ns;
-  return scan;
+  return out;
+}
+
+Scan LidarSensor::revolve(std::size_t index, TimeNs begin, const Surroundings& around,
+                          WorkerPool& pool) const {
+  return revolve_with_kinds(index, begin, around, pool).scan;
 }
 
 }  // namespace holdfast::simulation

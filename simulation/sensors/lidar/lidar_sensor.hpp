@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "holdfast/core/parallel.hpp"
@@ -9,6 +10,8 @@
 #include "simulation/events/time_span.hpp"
 #include "simulation/motion/drive.hpp"
 #include "simulation/sensors/lidar/lidar_model.hpp"
+#include "simulation/sensors/lidar/return_kind.hpp"
+#include "simulation/sensors/lidar/returns/return_model.hpp"
 #include "simulation/world/ray_caster.hpp"
 #include "simulation/world/walkers.hpp"
 
@@ -26,12 +29,20 @@ struct Surroundings {
 /// Casts every ray from where the LiDAR is at the ray's own time.
 class LidarSensor {
  public:
-  LidarSensor(const LidarModel& model, std::uint64_t seed);
+  LidarSensor(const LidarModel& model, std::uint64_t seed, const Weather& weather = {});
+
+  /// A scan, and where each of its points comes from.
+  struct Revolution {
+    Scan scan;
+    std::vector<ReturnKind> kinds;  ///< one a point; empty: all are surfaces
+  };
 
   /// The revolution that begins at `begin` (from the start of the log); its index names its noise.
   /// Points are in the order of firing; Scan::stamp is that of the first return, from the start of
   /// the log. Same bits for any number of threads.
   Scan revolve(std::size_t index, TimeNs begin, const Surroundings& around, WorkerPool& pool) const;
+  Revolution revolve_with_kinds(std::size_t index, TimeNs begin, const Surroundings& around,
+                                WorkerPool& pool) const;
 
  private:
   /// The LiDAR at the start of a column, and how its rays move from there, in the map frame.
@@ -43,16 +54,25 @@ class LidarSensor {
   };
   struct Chunk;
 
+  std::vector<Chunk> cast(std::size_t index, TimeNs begin, const Surroundings& around,
+                          WorkerPool& pool) const;
+  void prepare_chunk(Chunk& chunk, const Surroundings& around) const;
   ColumnPose column_pose(const Drive& drive, TimeNs t) const;
   TimeNs fire_time(std::size_t column, std::size_t beam) const;
   void cast_chunk(Chunk& chunk, const Surroundings& around) const;
   void cast_walkers(Chunk& chunk, const Surroundings& around) const;
   void measure_chunk(Chunk& chunk, const Surroundings& around) const;
 
+  // With faults or weather.
+  void keep_echoes(std::vector<Chunk>& chunks) const;
+  void measure_spoilt(Chunk& chunk, const Surroundings& around) const;
+
   LidarModel model_;
   std::uint64_t seed_;
+  std::optional<ReturnModel> returns_;       ///< none: no faults, clear air
   std::vector<TimeNs> column_times_;         ///< from the start of the revolution
   std::vector<Eigen::Vector3f> directions_;  ///< in the lidar frame, [column][beam]
+  std::size_t frame_ = 0;                    ///< of a rosette, whose directions they are
 };
 
 }  // namespace holdfast::simulation
