@@ -32,6 +32,15 @@ std::string hardship_complaint(const SimulationOptions& options) {
 
 }  // namespace
 
+DriveStyle style_of(const Scenario& scenario, const SimulationOptions& options) {
+  DriveStyle style = scenario.style;
+  if (options.motion == Motion::kHandheld) style = style.in_hand();
+  if (options.motion == Motion::kTurnOnSpot) style.turn_on_spot = true;
+  style = style.faster(options.speed_factor);
+  if (options.wobble_rad > 0) style.wobble_rad = options.wobble_rad;
+  return style;
+}
+
 std::string complaint(const Scenario& scenario, const SimulationOptions& options) {
   if (const std::string hard = hardship_complaint(options); !hard.empty()) return hard;
   const double interval = 1e9 / options.imu.rate_hz;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "holdfast/io/yaml_block.hpp"
+#include "simulation/events/event_reference.hpp"
 #include "simulation/files/part_files.hpp"
 #include "simulation/sensors/lidar/lidar_file.hpp"
 
@@ -161,11 +162,11 @@ std::string scenario_reference() {
       "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or\n"
       "`[x, y, z, radius_m]`. `people` is a list of a `route` and a `speed_m_s` each.\n"
       "[garage.yaml](../simulation/scenarios/garage.yaml) is a whole one.\n\n"
-      "{}\n## Parts of the world\n\n{}"
+      "{}\n## Parts of the world\n\n{}{}"
       "# Lidar files\n\n"
       "`--lidar FILE.yaml` takes a spinning LiDAR from a file; `--lidar NAME` one of {}.\n\n{}",
-      io::config_reference(fields), part_reference(), fmt::join(lidar_names(), ", "),
-      lidar_reference());
+      io::config_reference(fields), part_reference(), event_reference(),
+      fmt::join(lidar_names(), ", "), lidar_reference());
 }
 
 }  // namespace holdfast::simulation
