@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -27,6 +28,7 @@ struct SimulateArguments {
   std::optional<double> duration_s;
   std::vector<std::string> events;
   double changed_percent = 0;
+  simulation::Motion motion = simulation::Motion::kWheels;
   double speed_factor = 1;
   double wobble_deg = 0;
   std::string lidar = "rs16";
@@ -88,6 +90,7 @@ simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
   options.duration_s = arguments.duration_s;
   options.events = parse_events(arguments.events);
   options.changed_share = arguments.changed_percent / 100;
+  options.motion = arguments.motion;
   options.speed_factor = arguments.speed_factor;
   options.wobble_rad = arguments.wobble_deg * std::numbers::pi / 180;
   const auto lidar = simulation::make_lidar(arguments.lidar);
@@ -174,6 +177,20 @@ void add_sensors(CLI::App& command, SimulateArguments& arguments) {
       ->type_name("M");
 }
 
+void add_motion(CLI::App& command, SimulateArguments& arguments) {
+  using simulation::Motion;
+  const std::map<std::string, Motion> words = {{"wheels", Motion::kWheels},
+                                               {"handheld", Motion::kHandheld},
+                                               {"turn_on_spot", Motion::kTurnOnSpot}};
+  command
+      .add_option("--motion", arguments.motion,
+                  "who moves the LiDAR: wheels (the scenario's robot, default), handheld (a "
+                  "walking person: 1 to 3 m/s, steps, turns of up to 3 rad/s about all axes) or "
+                  "turn_on_spot (the robot stops at sharp corners and turns there)")
+      ->transform(CLI::CheckedTransformer(words))
+      ->type_name("WORD");
+}
+
 /// Options that make the drive harder than the scenario is.
 void add_hardships(CLI::App& command, SimulateArguments& arguments) {
   command
@@ -186,6 +203,7 @@ void add_hardships(CLI::App& command, SimulateArguments& arguments) {
         return text;
       })
       ->type_name("PERCENT");
+  add_motion(command, arguments);
   command
       .add_option("--speed", arguments.speed_factor,
                   "drive the same way so many times as fast, turns and accelerations as well; "
@@ -235,10 +253,9 @@ void add_simulate_command(CLI::App& app) {
       ->add_option(
           "--event", arguments->events,
           "NAME@T0[+DURATION], seconds from the start: blind (empty clouds), lidar_off and "
-          "imu_off (no messages), each 2 s long by default; imu_bias_jump, kidnap; clock_jump (of "
-          "the LiDAR's "
-          "stamps, for good unless it has a duration); may be "
-          "given more than once")
+          "imu_off (no messages), each 2 s long by default; imu_bias_jump; crowd (10 s); kidnap "
+          "(at once, or carried with the LiDAR covered for DURATION); clock_jump (of the LiDAR's "
+          "stamps, for good unless it has a duration); may be given more than once")
       ->type_name("EVENT")
       ->allow_extra_args(false);
   add_hardships(*command, *arguments);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "holdfast/core/parallel.hpp"
+#include "simulation/crowd/crowd.hpp"
 #include "simulation/events/event_schedule.hpp"
 #include "simulation/sensors/imu/imu_sensor.hpp"
 #include "simulation/sensors/lidar/lidar_sensor.hpp"
@@ -24,6 +25,25 @@ std::string late_event(const SimulationOptions& options, TimeNs duration) {
     if (event.start >= 0 && event.start < duration) continue;
     return fmt::format("event {} at {} s: expected a start within the log, 0 to {} s",
                        event_name(event.kind), to_seconds(event.start), to_seconds(duration));
+  }
+  return {};
+}
+
+/// A carry for which its span is too short, or that the log would cut off.
+std::string hasty_carry(const Drive& drive) {
+  for (const Carry& carry : drive.carries()) {
+    const double start_s = to_seconds(carry.span.begin);
+    const double duration_s = to_seconds(carry.span.end - carry.span.begin);
+    if (carry.needs > 0) {
+      return fmt::format(
+          "event kidnap at {} s: {} s are too short to stop, to be carried 3 m or turned by 45 "
+          "degrees by a person, and to be put down; expected at least {:.1f} s",
+          start_s, duration_s, to_seconds(carry.needs) + 0.05);
+    }
+    if (carry.span.end > drive.duration()) {
+      return fmt::format("event kidnap at {} s for {} s: expected an end within the log, {} s",
+                         start_s, duration_s, to_seconds(drive.duration()));
+    }
   }
   return {};
 }
@@ -93,9 +113,13 @@ Simulation::Parts::Parts(Scenario the_scenario, std::optional<ChangedWorld> chan
       lidar_clock(options.transport.lidar_clock, schedule.clock_jumps, options.seed),
       lost_imu(draw_losses(options.transport.imu_samples, imu_samples,
                            RandomStream(options.seed, "imu.losses"))),
-      around{caster, scenario.world.materials, drive, walkers, schedule.blind} {
+      around{caster, scenario.world.materials, drive, walkers, schedule.dark()} {
   scans =
       static_cast<std::size_t>(std::max<TimeNs>(log_end() - first_scan, 0) / options.lidar.period);
+  for (const TimeSpan& span : schedule.crowds) {
+    walkers.join(gather_crowd(span, drive, options.lidar.T_body_lidar.translation, walkers, caster,
+                              options.seed));
+  }
   events = schedule.took_place(drive, kEpoch, log_end());
 }
 
@@ -192,12 +216,15 @@ Result<std::unique_ptr<Simulation>> Simulation::create(Scenario scenario,
                                                        const SimulationOptions& options) {
   const std::string wrong = complaint(scenario, options);
   if (!wrong.empty()) return Error{wrong};
-  scenario.style = scenario.style.faster(options.speed_factor);
-  scenario.style.wobble_rad = options.wobble_rad;
+  const std::string clashing = clash(options.events);
+  if (!clashing.empty()) return Error{clashing};
+  scenario.style = style_of(scenario, options);
   std::optional<TimeNs> duration;
   if (options.duration_s) duration = from_seconds(*options.duration_s);
   Drive drive = Drive::plan(scenario.route, scenario.style, options.seed, duration,
-                            starts_of(EventKind::kKidnap, options.events));
+                            starts_of(EventKind::kKidnap, options.events),
+                            spans_of(EventKind::kKidnap, options.events),
+                            spans_of(EventKind::kCrowd, options.events));
   std::optional<ChangedWorld> change;
   if (options.changed_share > 0) {
     auto changed = change_world(scenario, options.changed_share, options.seed);
@@ -207,6 +234,8 @@ Result<std::unique_ptr<Simulation>> Simulation::create(Scenario scenario,
   scenario.world = change ? std::move(change->after) : unchanged_world(scenario.world);
   const std::string late = late_event(options, drive.duration());
   if (!late.empty()) return Error{late};
+  const std::string hasty = hasty_carry(drive);
+  if (!hasty.empty()) return Error{hasty};
   auto parts =
       std::make_unique<Parts>(std::move(scenario), std::move(change), options, std::move(drive));
   return std::unique_ptr<Simulation>(new Simulation(std::move(parts)));
@@ -304,6 +333,7 @@ const std::vector<Segment>& Simulation::edges() {
 const std::vector<SimulatedEvent>& Simulation::events() const { return parts_->events; }
 const SimulationOptions& Simulation::options() const { return parts_->options; }
 const Scenario& Simulation::scenario() const { return parts_->scenario; }
+const Walkers& Simulation::people() const { return parts_->walkers; }
 const std::vector<ObjectChange>& Simulation::changes() const { return parts_->changes; }
 
 io::PointCloud Simulation::survey_map() {

@@ -88,6 +88,8 @@ class Simulation : public SensorSource {
   const SimulationOptions& options() const;
   /// The scenario as driven: its world is the one after the changes.
   const Scenario& scenario() const;
+  /// All who walk there, a crowd included; times from the start of the log.
+  const Walkers& people() const;
   /// What has changed in the world since the survey.
   const std::vector<ObjectChange>& changes() const;
 

@@ -47,6 +47,15 @@ std::string transport_complaint(const TransportModel& transport) {
 
 }  // namespace
 
+DriveStyle style_of(const Scenario& scenario, const SimulationOptions& options) {
+  DriveStyle style = scenario.style;
+  if (options.motion == Motion::kHandheld) style = style.in_hand();
+  if (options.motion == Motion::kTurnOnSpot) style.turn_on_spot = true;
+  style = style.faster(options.speed_factor);
+  if (options.wobble_rad > 0) style.wobble_rad = options.wobble_rad;
+  return style;
+}
+
 std::string complaint(const Scenario& scenario, const SimulationOptions& options) {
   if (const std::string hard = hardship_complaint(options); !hard.empty()) return hard;
   if (const std::string lossy = transport_complaint(options.transport); !lossy.empty()) {

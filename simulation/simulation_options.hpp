@@ -17,6 +17,13 @@
 
 namespace holdfast::simulation {
 
+/// Who moves the LiDAR.
+enum class Motion {
+  kWheels,      ///< the scenario's robot
+  kHandheld,    ///< a walking person, see DriveStyle::in_hand()
+  kTurnOnSpot,  ///< the scenario's robot, which turns on the spot at sharp corners
+};
+
 struct SimulationOptions {
   std::string scenario = "corridor";
   std::uint64_t seed = 1;            ///< another drive, other noise, in the same world
@@ -29,12 +36,16 @@ struct SimulationOptions {
   std::optional<WheelModel> wheel;   ///< none: the robot has no odometer
   std::optional<GnssModel> gnss;     ///< none: no receiver
   ExtrinsicsError extrinsics_error;  ///< of the T_body_lidar that config.yaml states
-  double speed_factor = 1;           ///< on the scenario's speed, turning rate and accelerations
-  double wobble_rad = 0;             ///< amplitude of roll, pitch and yaw at 1 to 3 Hz while moving
-  double map_sigma_m = 0.005;        ///< noise of the survey on each axis
-  double changed_share = 0;          ///< of the world's objects since the survey, 0 to 1
-  int threads = 1;                   ///< the stream has the same bits for any number
+  Motion motion = Motion::kWheels;
+  double speed_factor = 1;     ///< on the scenario's speed, turning rate and accelerations
+  double wobble_rad = 0;       ///< amplitude of roll, pitch and yaw at 1 to 3 Hz; 0: the style's
+  double map_sigma_m = 0.005;  ///< noise of the survey on each axis
+  double changed_share = 0;    ///< of the world's objects since the survey, 0 to 1
+  int threads = 1;             ///< the stream has the same bits for any number
 };
+
+/// The scenario's style of driving as the options change it.
+DriveStyle style_of(const Scenario& scenario, const SimulationOptions& options);
 
 /// What is wrong with a drive through `scenario` with these options, empty when nothing is.
 std::string complaint(const Scenario& scenario, const SimulationOptions& options);

@@ -75,6 +75,7 @@ class PlaceRun {
     DriveSpec spec = spec_;
     spec.events = what.events;
     spec.changed_share = what.changed_share;
+    spec.motion = what.motion;
     auto drive = make_drive(spec);
     if (!drive) return drive.error();
     const auto steps =

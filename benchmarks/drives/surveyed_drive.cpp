@@ -16,6 +16,7 @@ Result<std::unique_ptr<simulation::Simulation>> make_drive(const DriveSpec& spec
   options.lidar = spec.lidar;
   options.events = spec.events;
   options.changed_share = spec.changed_share;
+  options.motion = spec.motion;
   return simulation::Simulation::create(options);
 }
 

@@ -20,6 +20,7 @@ struct DriveSpec {
   simulation::LidarModel lidar = simulation::LidarModel::rs16();
   std::vector<simulation::EventSpec> events = {};
   double changed_share = 0;  ///< of the world's objects since the survey
+  simulation::Motion motion = simulation::Motion::kWheels;
 };
 
 /// A simulated drive that has not begun, and all that `holdfast localize` would be given: the map

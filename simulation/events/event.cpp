@@ -9,15 +9,19 @@
 namespace holdfast::simulation {
 namespace {
 
-constexpr std::array<std::string_view, 6> kNames = {"blind",         "lidar_off", "imu_off",
-                                                    "imu_bias_jump", "kidnap",    "clock_jump"};
+constexpr std::array<std::string_view, 7> kNames = {
+    "blind", "lidar_off", "imu_off", "imu_bias_jump", "kidnap", "clock_jump", "crowd"};
 constexpr TimeNs kDefaultDuration = 2 * kSecond;
+constexpr TimeNs kDefaultCrowd = 10 * kSecond;
 
 bool lasts(EventKind kind) {
   return kind == EventKind::kBlind || kind == EventKind::kLidarOff || kind == EventKind::kImuOff;
 }
 
-bool may_last(EventKind kind) { return lasts(kind) || kind == EventKind::kClockJump; }
+bool may_last(EventKind kind) {
+  return lasts(kind) || kind == EventKind::kKidnap || kind == EventKind::kClockJump ||
+         kind == EventKind::kCrowd;
+}
 
 Error bad_event(const std::string& text, const std::string& found) {
   return {
@@ -41,7 +45,8 @@ std::string details_json(const SimulatedEvent& event) {
   switch (event.kind) {
     case EventKind::kBlind:
     case EventKind::kLidarOff:
-    case EventKind::kImuOff: return "";
+    case EventKind::kImuOff:
+    case EventKind::kCrowd: return "";
     case EventKind::kImuBiasJump:
       return fmt::format(",\"gyro_step_rad_s\":{},\"accel_step_m_s2\":{}",
                          vector_json(event.gyro_step_rad_s), vector_json(event.accel_step_m_s2));
@@ -51,9 +56,9 @@ std::string details_json(const SimulatedEvent& event) {
   const double distance = (event.pose_after.translation - event.pose_before.translation).norm();
   const double angle = so3::angle_between(event.pose_before.rotation, event.pose_after.rotation);
   return fmt::format(
-      ",\"pose_before\":{},\"pose_after\":{},\"distance_m\":{:.6f},\"angle_deg\":{:.6f}",
-      pose_json(event.pose_before), pose_json(event.pose_after), distance,
-      angle * 180 / std::numbers::pi);
+      "{},\"pose_before\":{},\"pose_after\":{},\"distance_m\":{:.6f},\"angle_deg\":{:.6f}",
+      event.carried ? ",\"carried\":true" : "", pose_json(event.pose_before),
+      pose_json(event.pose_after), distance, angle * 180 / std::numbers::pi);
 }
 
 }  // namespace
@@ -77,6 +82,7 @@ Result<EventSpec> parse_event(const std::string& text) {
     return bad_event(text, fmt::format("the start '{}'", start));
   }
   if (lasts(event.kind)) event.duration = kDefaultDuration;
+  if (event.kind == EventKind::kCrowd) event.duration = kDefaultCrowd;
   if (plus == std::string::npos) return event;
   const std::string duration = text.substr(plus + 1);
   if (!may_last(event.kind)) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "holdfast/io/yaml_block.hpp"
+#include "simulation/events/event_reference.hpp"
 #include "simulation/files/fault_reference.hpp"
 #include "simulation/files/part_files.hpp"
 #include "simulation/sensors/imu/imu_file.hpp"
@@ -166,7 +167,7 @@ std::string scenario_reference() {
              "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or\n"
              "`[x, y, z, radius_m]`. `people` is a list of a `route` and a `speed_m_s` each.\n"
              "[garage.yaml](../simulation/scenarios/garage.yaml) is a whole one.\n\n"
-             "{}\n## Parts of the world\n\n{}"
+             "{}\n## Parts of the world\n\n{}{}"
              "# Lidar files\n\n"
              "`--lidar FILE.yaml` takes a LiDAR from a file; `--lidar NAME` one of {}.\n"
              "The block `faults` says what it does wrong, by default nothing; `--faults lidar` "
@@ -174,7 +175,7 @@ std::string scenario_reference() {
              "LiDAR the usual sizes. Rain and dust (`--rain`, `--visibility`) are none of the "
              "sensor's:\n"
              "they weaken returns, which limits the reach, and return some light themselves.\n\n{}",
-             io::config_reference(fields), part_reference(), fmt::join(lidar_names(), ", "),
+             io::config_reference(fields), part_reference(), event_reference(), fmt::join(lidar_names(), ", "),
              lidar_reference()) +
          "\n" + imu_reference() + "\n" + fault_reference();
 }

@@ -34,16 +34,20 @@ constexpr double kBlendEnd = 1.75;
 constexpr double kFarMetres = 3.5;
 constexpr double kFarRadians = 60.0 / 180.0 * std::numbers::pi;
 
+constexpr double kSharp = 40.0 / 180.0 * std::numbers::pi;  // corners for turning on the spot
+
+constexpr double kCrowdPace = 1.2;   // m/s
+constexpr double kCarryReach = 2.5;  // metres at most for each second of a carry
+constexpr double kHeldBrake = 2.0;   // m/s^2 when somebody stops the robot to carry it away
+
+// To be told how long a carry must last one tries longer and longer ones.
+constexpr std::size_t kCarryStep = 5;  // ticks
+constexpr std::size_t kCarryMost = 1200;
+
 constexpr double kWobbleSpeed = 0.3;  // m/s from which on the wobble is full
 
 TimeNs tick_time(std::size_t tick) { return (static_cast<TimeNs>(tick) - TimeNs{kLead}) * kKnot; }
 std::size_t tick_at(TimeNs t) { return static_cast<std::size_t>(t / kKnot) + kLead; }
-
-/// 0 below 0, 1 above 1, twice continuously differentiable.
-double smooth_step(double x) {
-  x = std::clamp(x, 0.0, 1.0);
-  return x * x * x * (10 + x * (6 * x - 15));
-}
 
 /// `pose` moved by the yaw-only transform that takes pose `a` to the place of pose `b`.
 PoseVector moved(const PoseVector& pose, const PoseVector& a, const PoseVector& b) {
@@ -71,12 +75,14 @@ DrivePlanner::TwoWaves DrivePlanner::draw_waves(RandomStream& random, double lon
 }
 
 DrivePlanner::DrivePlanner(const Route& route, const DriveStyle& style, std::uint64_t seed)
-    : style_(style), kidnap_random_(seed, "drive.kidnap") {
-  const Route back = route.reversed();
-  courses_.push_back({route, SpeedLimit(route, style)});
+    : style_(style), gait_(style, seed), kidnap_random_(seed, "drive.kidnap") {
+  if (style_.turn_on_spot) style_.weave_m = 0;
+  const Route way = style_.turn_on_spot ? route.turning_on_spot(kSharp) : route;
+  const Route back = way.reversed();
+  courses_.push_back({way, SpeedLimit(way, style)});
   courses_.push_back({back, SpeedLimit(back, style)});
   RandomStream start(seed, "drive.start");
-  legs_.push_back({0, start.below(2), start.uniform(0, route.length()), 0});
+  legs_.push_back({0, start.below(2), start.uniform(0, way.length()), 0});
   RandomStream line(seed, "drive.line");
   weave_ = draw_waves(line, 25.0 / 7.0 * style.weave_length_m, style.weave_length_m);
   RandomStream pace(seed, "drive.pace");
@@ -87,11 +93,14 @@ DrivePlanner::DrivePlanner(const Route& route, const DriveStyle& style, std::uin
   for (auto& waves : wobble_) waves = draw_waves(wobble, 1.0, 1.0 / 3.0);
 }
 
-void DrivePlanner::drive(std::optional<TimeNs> duration, const std::vector<TimeNs>& kidnaps) {
+void DrivePlanner::drive(std::optional<TimeNs> duration, const std::vector<TimeNs>& kidnaps,
+                         const std::vector<TimeSpan>& carries) {
   gone_.assign(kLead, 0.0);
   speed_.assign(kLead, 0.0);
   std::optional<TimeNs> end = duration;
   auto kidnap = kidnaps.begin();
+  auto carry = carries.begin();
+  bool lifted = false;
   double gone = 0;
   double speed = 0;
   for (std::size_t tick = kLead; !end || tick_time(tick) < *end + TimeNs{kTail + 1} * kKnot;
@@ -102,11 +111,18 @@ void DrivePlanner::drive(std::optional<TimeNs> duration, const std::vector<TimeN
     }
     gone_.push_back(gone);
     speed_.push_back(speed);
-    const double target = target_speed(t, gone, !duration);
+    if (carry != carries.end() && lifted && t >= carry->end + kReach) {
+      ++carry;
+      lifted = false;
+    }
+    const bool held = carry != carries.end() && carry->begin <= t;
+    if (held && !lifted) lifted = lift(*carry, tick);
+    const double target = held ? 0 : target_speed(t, gone, !duration);
     const double step = style_.acceleration_m_s2 * kKnotSeconds;
-    speed += std::clamp(target - speed, -1.5 * step, step);
+    const double brake = held ? std::max(1.5 * step, kHeldBrake * kKnotSeconds) : 1.5 * step;
+    speed += std::clamp(target - speed, -brake, step);
     gone += speed * kKnotSeconds;
-    if (!end && speed == 0 && t > from_seconds(style_.rest_s) + kReach) {
+    if (!end && speed == 0 && !held && t > from_seconds(style_.rest_s) + kReach) {
       end = (t + kReach) / kSecond * kSecond + 2 * kSecond;
     }
   }
@@ -117,14 +133,26 @@ double DrivePlanner::target_speed(TimeNs t, double gone, bool stop_at_distance) 
   if (t < from_seconds(style_.rest_s) + kReach) return 0;
   const Leg& leg = legs_.back();
   const double seconds = to_seconds(t);
-  const double pace = 1 + 0.05 * (pace_[0].at(seconds) + pace_[1].at(seconds));
+  const double pace = 1 + 0.5 * style_.pace_share * (pace_[0].at(seconds) + pace_[1].at(seconds));
   double target = pace * courses_[leg.course].limit.at(leg.s + gone - leg.gone);
+  target = std::min(target, crowd_limit(t));
   if (stop_at_distance) {
     const double left = style_.distance_m - gone;
     if (left < 0.02) return 0;
     target = std::min(target, std::sqrt(2 * style_.acceleration_m_s2 * left));
   }
   return target;
+}
+
+/// A walking pace within the crowds, reached by braking before them.
+double DrivePlanner::crowd_limit(TimeNs t) const {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const TimeSpan& crowd : crowds_) {
+    if (t >= crowd.end) continue;
+    const double ahead = std::max(0.0, to_seconds(crowd.begin - kReach - t));
+    limit = std::min(limit, kCrowdPace + style_.acceleration_m_s2 * ahead);
+  }
+  return limit;
 }
 
 /// Draws the place after a kidnap among those far enough away where the route bends about as it
@@ -163,6 +191,63 @@ double DrivePlanner::course_difference(const Leg& from, const Leg& to, double go
   return worst;
 }
 
+/// Carries the robot from where it stands at `tick`, once it stands; false if it does not yet.
+bool DrivePlanner::lift(const TimeSpan& carry, std::size_t tick) {
+  constexpr std::size_t kStill = kMeanReach + kSplineReach;
+  const double gone = gone_[tick];
+  if (gone_[tick - kStill] != gone) return false;
+  const double gone_before = gone_[tick_at(carry.begin)];
+  const std::size_t last = tick_at(carry.end);
+  const std::size_t begin = tick + kSplineReach;
+  const std::size_t ticks = last > begin + kSplineReach ? last - begin - kSplineReach : 0;
+  std::size_t needed = ticks;
+  auto candidates = carry_candidates(begin, needed, gone_before);
+  const bool in_time = !candidates.empty();
+  while (candidates.empty() && needed < kCarryMost) {
+    needed += kCarryStep;
+    candidates = carry_candidates(begin, needed, gone_before);
+  }
+  const auto reach = static_cast<TimeNs>(needed + kSplineReach + 1);
+  needed_for_carries_.push_back(in_time ? 0 : tick_time(begin) + reach * kKnot - carry.begin);
+  if (in_time) legs_.push_back(candidates[kidnap_random_.below(candidates.size())]);
+  return true;
+}
+
+/// Legs that begin far enough away, from where the robot rests and from where it was when it had
+/// gone `gone_before`, and to which a person can carry it in so many ticks from `begin` on.
+std::vector<DrivePlanner::Leg> DrivePlanner::carry_candidates(std::size_t begin, std::size_t ticks,
+                                                              double gone_before) const {
+  std::vector<Leg> out;
+  if (ticks == 0) return out;
+  constexpr double kStep = 0.25;
+  const Leg& from = legs_.back();
+  const double gone = gone_.back();
+  const double s = from.s + gone - from.gone;
+  const Leg before{from.start, from.course, from.s + gone_before - from.gone, gone};
+  const Leg here{from.start, from.course, s, gone};
+  const int most =
+      static_cast<int>(kCarryReach * static_cast<double>(ticks) * kKnotSeconds / kStep);
+  for (int i = -most; i <= most; ++i) {
+    const double way = i * kStep;
+    const double turned_s = courses_[from.course].route.reversed_s(s + way);
+    const TimeNs start = tick_time(begin - kSplineReach);
+    for (const Leg& to : {Leg{start, from.course, s + way, gone, begin + ticks, way},
+                          Leg{start, 1 - from.course, turned_s, gone, begin + ticks, way}}) {
+      if (!is_far(here, to) || !is_far(before, to)) continue;
+      const CarryPath path = carry_path(here, to);
+      if (is_humanly_possible(carried(path, ticks, kKnot), kKnot)) out.push_back(to);
+    }
+  }
+  return out;
+}
+
+CarryPath DrivePlanner::carry_path(const Leg& from, const Leg& to) const {
+  CarryPath path{courses_[from.course].route, from.s + to.gone - from.gone, to.carried_m,
+                 pose(from, to.gone), pose(to, to.gone)};
+  path.to[3] = path.from[3] + std::remainder(path.to[3] - path.from[3], kTwoPi);
+  return path;
+}
+
 /// Where the robot is on a leg when it has gone so far since the start of the log, weaving
 /// included.
 Route::Place DrivePlanner::place(const Leg& leg, double gone) const {
@@ -174,6 +259,14 @@ Route::Place DrivePlanner::place(const Leg& leg, double gone) const {
   place.position.y() += aside * std::cos(place.heading);
   place.heading += std::atan(aside_slope);
   return place;
+}
+
+PoseVector DrivePlanner::pose(const Leg& leg, double gone) const {
+  const Route::Place at = place(leg, gone);
+  PoseVector pose;
+  pose << at.position, at.heading, -std::atan(at.slope), 0;
+  pose[2] += style_.body_height_m;
+  return pose;
 }
 
 std::size_t DrivePlanner::first_tick(std::size_t leg) const {
@@ -189,11 +282,7 @@ DrivePlanner::Controls DrivePlanner::plain_controls(std::size_t leg) const {
   Controls raw;
   for (std::size_t tick = first_tick(leg) - kMeanReach; tick <= last_tick(leg) + kMeanReach;
        ++tick) {
-    const Route::Place at = place(legs_[leg], gone_[tick]);
-    PoseVector pose;
-    pose << at.position, at.heading, -std::atan(at.slope), 0;
-    pose[2] += style_.body_height_m;
-    raw.push_back(pose);
+    raw.push_back(pose(legs_[leg], gone_[tick]));
   }
   return smoothed(std::move(raw));
 }
@@ -213,6 +302,20 @@ void DrivePlanner::join(std::size_t leg, const Controls& before, Controls& after
     const double weight = smooth_step((since - kBlendBegin) / (kBlendEnd - kBlendBegin));
     const PoseVector& felt = before[tick - first_tick(leg - 1)];
     after[i] = weight * after[i] + (1 - weight) * moved(felt, from, to);
+  }
+}
+
+/// Makes leg `leg` begin where the leg before it rests: carried to the place where it goes on.
+void DrivePlanner::carry(std::size_t leg, Controls& after) const {
+  const Leg& to = legs_[leg];
+  const CarryPath path = carry_path(legs_[leg - 1], to);
+  const std::size_t begin = tick_at(to.start) + kSplineReach;
+  const Controls way = carried(path, to.put_down - begin, kKnot);
+  const double turn = path.to[3] - pose(to, to.gone)[3];
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const std::size_t tick = first_tick(leg) + i;
+    after[i][3] += turn;
+    if (tick < to.put_down) after[i] = way[tick > begin ? tick - begin : 0];
   }
 }
 
@@ -260,16 +363,30 @@ void DrivePlanner::add_wobble(std::size_t leg, Controls& controls) const {
   }
 }
 
+/// Adds what a walking person does, full as soon as it moves.
+void DrivePlanner::add_gait(std::size_t leg, Controls& controls) const {
+  const std::size_t first = first_tick(leg);
+  const std::vector<double> moving = speeds(leg, kWobbleSpeed);
+  for (std::size_t i = 0; i < controls.size(); ++i) {
+    gait_.add(to_seconds(tick_time(first + i)), moving[i] / kWobbleSpeed, controls[i]);
+  }
+}
+
 std::vector<Trajectory> DrivePlanner::trajectories() const {
   std::vector<Controls> controls;
   for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
     controls.push_back(plain_controls(leg));
-    if (leg > 0) join(leg, controls[leg - 1], controls[leg]);
+    if (is_carried(leg)) {
+      carry(leg, controls[leg]);
+    } else if (leg > 0) {
+      join(leg, controls[leg - 1], controls[leg]);
+    }
   }
   std::vector<Trajectory> out;
   for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
     add_sway(leg, controls[leg]);
     add_wobble(leg, controls[leg]);
+    add_gait(leg, controls[leg]);
     out.emplace_back(tick_time(first_tick(leg)), kKnot, std::move(controls[leg]));
   }
   return out;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulation/motion/smoothing.hpp"
+
 namespace holdfast::simulation {
 namespace {
 
@@ -31,9 +33,14 @@ Rounding round_corner(const Eigen::Vector3d& before, const RouteCorner& corner,
   const double heading = std::atan2(in.y(), in.x());
   const double turn = wrapped(std::atan2(out.y(), out.x()) - heading);
   const double half_tan = std::tan(0.5 * std::abs(turn));
+  if (corner.on_spot) return {corner.position, corner.position, heading, turn, 0};
   const double cut = std::min({corner.radius_m * half_tan, 0.5 * in_length, 0.5 * out_length});
   return {corner.position - in * (cut / in_length), corner.position + out * (cut / out_length),
           heading, turn, half_tan > kShortest ? cut / half_tan : 0.0};
+}
+
+double spot_length(double turn) {
+  return 2 * Route::kSpotRest + kSmoothStepSteepest * Route::kSpotMetresPerRadian * std::abs(turn);
 }
 
 }  // namespace
@@ -53,10 +60,14 @@ Route Route::closed(const std::vector<RouteCorner>& corners) {
     const Rounding& r = roundings[i];
     const double rise = r.end.z() - r.begin.z();
     const double arc = std::abs(r.turn) * r.radius;
+    if (corners[i].on_spot) {
+      route.append({0, spot_length(r.turn), r.begin, 0, heading, 0, r.turn});
+    }
     route.append({0, arc, r.begin, rise, heading, arc > 0 ? r.turn / arc : 0});
     heading += r.turn;
     const Eigen::Vector3d straight = roundings[(i + 1) % n].begin - r.end;
     route.append({0, straight.head<2>().norm(), r.end, straight.z(), heading, 0});
+    route.last_straight_ = straight.head<2>().norm();
   }
   route.turning_ = heading - roundings[0].heading;
   return route;
@@ -83,6 +94,7 @@ Route::Place Route::at(double s) const {
                                      [](double value, const Piece& p) { return value < p.s; });
   const Piece& piece = next == pieces_.begin() ? *next : *(next - 1);
   const double along = in_round - piece.s;
+  if (piece.spot_turn != 0) return on_spot(piece, along, rounds * turning_);
   const double turn = piece.curvature * along;
   // Chord of an arc: length along * sinc(turn / 2) in the direction of half the turn.
   const double half_sinc = std::abs(turn) < 1e-6 ? 1.0 : std::sin(0.5 * turn) / (0.5 * turn);
@@ -94,8 +106,28 @@ Route::Place Route::at(double s) const {
   return {piece.begin + step, piece.heading + turn + rounds * turning_, piece.curvature, slope};
 }
 
+Route::Place Route::on_spot(const Piece& piece, double along, double turned) {
+  const double turning = piece.length - 2 * kSpotRest;
+  const double share = (along - kSpotRest) / turning;
+  Place place{piece.begin, piece.heading + piece.spot_turn * smooth_step(share) + turned};
+  place.curvature = piece.spot_turn * smooth_step_slope(share) / turning;
+  place.on_spot = true;
+  return place;
+}
+
 Route Route::reversed() const {
   std::vector<RouteCorner> corners(corners_.rbegin(), corners_.rend());
+  return closed(corners);
+}
+
+Route Route::turning_on_spot(double least_turn) const {
+  std::vector<RouteCorner> corners = corners_;
+  const std::size_t n = corners.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Rounding r = round_corner(corners_[(i + n - 1) % n].position, corners_[i],
+                                    corners_[(i + 1) % n].position);
+    corners[i].on_spot = std::abs(r.turn) >= least_turn;
+  }
   return closed(corners);
 }
 

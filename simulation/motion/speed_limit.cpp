@@ -8,8 +8,9 @@ namespace {
 
 constexpr double kStep = 0.05;  // metres, about
 
-double limit_in_turn(double curvature, const DriveStyle& style) {
-  const double k = std::abs(curvature);
+double limit_in_turn(const Route::Place& place, const DriveStyle& style) {
+  if (place.on_spot) return Route::kSpotMetresPerRadian * style.yaw_rate_rad_s;
+  const double k = std::abs(place.curvature);
   if (k < 1e-9) return style.speed_m_s;
   return std::min({style.speed_m_s, style.yaw_rate_rad_s / k, std::sqrt(style.lateral_m_s2 / k)});
 }
@@ -20,7 +21,7 @@ SpeedLimit::SpeedLimit(const Route& route, const DriveStyle& style) : length_(ro
   const auto n = static_cast<std::size_t>(std::ceil(length_ / kStep));
   step_ = length_ / static_cast<double>(n);
   for (std::size_t i = 0; i < n; ++i) {
-    speed_.push_back(limit_in_turn(route.at(static_cast<double>(i) * step_).curvature, style));
+    speed_.push_back(limit_in_turn(route.at(static_cast<double>(i) * step_), style));
   }
   for (std::size_t i = 2 * n; i-- > 0;) {  // two rounds backwards: v^2 <= v_next^2 + 2 a step
     const double next = speed_[(i + 1) % n];

@@ -26,6 +26,8 @@ constexpr double kHip = 0.85;
 constexpr double kStepsPerSecond = 0.9;  // swings of one leg
 constexpr double kStride = 0.25;         // swing of a foot to each side of the hip at 0.8 m/s
 
+constexpr double kMostStride = 0.4;  // from 1.3 m/s on
+
 /// Someone or something to keep away from: where it is at each tick (the first is kMargin ticks
 /// before the log), and how far its axis must stay away.
 struct Obstacle {
@@ -122,7 +124,13 @@ Walkers::Walkers(const std::vector<WalkerPlan>& plans, const Drive& robot, std::
     obstacles.push_back(std::move(person));
     const TimeNs begin = (static_cast<TimeNs>(kMeanReach) - static_cast<TimeNs>(kMargin)) * kTick;
     people_.push_back({Trajectory(begin, kTick, smoothed(std::move(places))),
-                       random.uniform(0, 2 * std::numbers::pi)});
+                       random.uniform(0, 2 * std::numbers::pi), std::nullopt});
+  }
+}
+
+void Walkers::join(const std::vector<Passer>& passers) {
+  for (const Passer& passer : passers) {
+    people_.push_back({passer.path, passer.step_phase, passer.present});
   }
 }
 
@@ -130,12 +138,14 @@ MotionState Walkers::at(std::size_t i, TimeNs t) const { return people_[i].path.
 
 void Walkers::shapes_at(TimeNs t, std::vector<Capsule>& shapes) const {
   shapes.clear();
-  for (const Person& person : people_) {
+  for (std::size_t i = 0; i < people_.size(); ++i) {
+    if (!is_there(i, t)) continue;
+    const Person& person = people_[i];
     const MotionState body = person.path.at(t);
     shapes.push_back(limb(body, {0, 0, 0.95}, {0, 0, 1.38}, 0.18));
     shapes.push_back(limb(body, {0, 0, 1.60}, {0, 0, 1.66}, 0.11));
     const double angle = 2 * std::numbers::pi * kStepsPerSecond * to_seconds(t) + person.step_phase;
-    const double stride = kStride * body.v_map.norm() / 0.8;
+    const double stride = std::min(kStride * body.v_map.norm() / 0.8, kMostStride);
     for (const double side : {1.0, -1.0}) {
       const double swing = side * stride * std::sin(angle);
       shapes.push_back(limb(body, {0, side * 0.09, kHip}, {swing, side * 0.09, 0.08}, 0.075));

@@ -29,6 +29,17 @@ TEST(Route, RunsThroughTheMiddlesOfItsSides) {
   EXPECT_NEAR(route.at(kPi / 2 + 8 + kPi / 4).curvature, 1, 1e-12);
 }
 
+TEST(Route, TellsWhereItsReversePassesAPlace) {
+  const Route route = rectangle();
+  const Route back = route.reversed();
+  for (double s = -5; s < 2 * route.length(); s += 0.37) {
+    const auto a = route.at(s);
+    const auto b = back.at(route.reversed_s(s));
+    ASSERT_NEAR((a.position - b.position).norm(), 0, 1e-12) << s;
+    ASSERT_NEAR(std::remainder(a.heading - b.heading - kPi, 2 * kPi), 0, 1e-12) << s;
+  }
+}
+
 TEST(Route, IsContinuousAndMovesAlongItsHeading) {
   for (const Route& route : {rectangle(), rectangle().reversed()}) {
     constexpr double kStep = 1e-3;

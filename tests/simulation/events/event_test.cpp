@@ -13,6 +13,9 @@ TEST(Event, IsParsedFromNameStartAndDuration) {
   EXPECT_EQ(kidnap.kind, EventKind::kKidnap);
   EXPECT_EQ(kidnap.start, 30 * kSecond);
   EXPECT_EQ(kidnap.duration, 0);
+  EXPECT_EQ(parse_event("crowd@3")->duration, 10 * kSecond);
+  EXPECT_EQ(parse_event("crowd@3+4")->duration, 4 * kSecond);
+  EXPECT_EQ(parse_event("kidnap@30+6")->duration, 6 * kSecond);
   const EventSpec blind = *parse_event("blind@12.5+0.75");
   EXPECT_EQ(blind.kind, EventKind::kBlind);
   EXPECT_EQ(blind.start, 12'500'000'000);
@@ -27,13 +30,14 @@ TEST(Event, IsParsedFromNameStartAndDuration) {
 }
 
 TEST(Event, ErrorsShowFormNamesAndWhatWasFound) {
-  for (const char* text : {"kidnap", "kidnap@", "kidnap@x", "kidnap@-1", "blind@3+", "blind@3+0",
-                           "blind@3+x", "kidnap@3+1", "teleport@3", "@3", ""}) {
+  for (const char* text :
+       {"kidnap", "kidnap@", "kidnap@x", "kidnap@-1", "blind@3+", "blind@3+0", "blind@3+x",
+        "kidnap@3+0", "imu_bias_jump@3+1", "teleport@3", "@3", ""}) {
     const auto event = parse_event(text);
     ASSERT_FALSE(event) << text;
     EXPECT_THAT(event.error().message, HasSubstr("NAME@T0[+DURATION]"));
     EXPECT_THAT(event.error().message,
-                HasSubstr("blind, lidar_off, imu_off, imu_bias_jump, kidnap, clock_jump"));
+                HasSubstr("blind, lidar_off, imu_off, imu_bias_jump, kidnap, clock_jump, crowd"));
   }
   EXPECT_THAT(parse_event("teleport@3").error().message, HasSubstr("found the name 'teleport'"));
 }
@@ -66,6 +70,9 @@ TEST(Event, AKidnapSaysFromWhereToWhere) {
   EXPECT_THAT(json, HasSubstr(R"("distance_m":5.000000,"angle_deg":90.000000)"));
   EXPECT_THAT(json, HasSubstr(R"("pose_before":[0.000000,)"));
   EXPECT_THAT(json, HasSubstr(R"("pose_after":[3.000000,4.000000,)"));
+  EXPECT_THAT(json, HasSubstr(R"("event":"kidnap","pose_before")"));
+  event.carried = true;
+  EXPECT_THAT(event_json(event), HasSubstr(R"("event":"kidnap","carried":true,"pose_before":[)"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/simulation/imu_integration.hpp"
 #include "tests/simulation/support.hpp"
 #include "tests/simulation/tolerances.hpp"
 
@@ -11,44 +12,13 @@ namespace holdfast::simulation {
 namespace {
 
 using Eigen::Vector3d;
+using testing::integrate;
+using testing::Integrated;
 using testing::make;
 using testing::noise_free;
 using testing::record;
 
 constexpr double kStep = 0.005;  // of the default IMU
-
-/// Rotation over two intervals from three rates: Simpson's rule and the first commutator (fourth
-/// order Magnus expansion), and over the first of the two from the parabola through the same rates.
-Eigen::Quaterniond two_steps(const Vector3d& a, const Vector3d& b, const Vector3d& c, double step) {
-  return so3::exp(step / 3 * (a + 4 * b + c) + 4 * step * step / 12 * a.cross(c));
-}
-Eigen::Quaterniond one_step(const Vector3d& a, const Vector3d& b, const Vector3d& c, double step) {
-  return so3::exp(step / 12 * (5 * a + 8 * b - c) + step * step / 12 * a.cross(b));
-}
-
-struct Integrated {
-  SE3 pose;
-  Vector3d velocity;
-};
-
-Integrated integrate(const std::vector<ImuSample>& imu, Integrated state, const Vector3d& g,
-                     double step = kStep) {
-  for (std::size_t i = 0; i + 2 < imu.size(); i += 2) {
-    const auto& [t0, w0, f0] = imu[i];
-    const auto& [t1, w1, f1] = imu[i + 1];
-    const auto& [t2, w2, f2] = imu[i + 2];
-    const Eigen::Quaterniond middle = state.pose.rotation * one_step(w0, w1, w2, step);
-    const Eigen::Quaterniond end = (state.pose.rotation * two_steps(w0, w1, w2, step)).normalized();
-    const Vector3d a0 = state.pose.rotation * f0 + g;
-    const Vector3d a1 = middle * f1 + g;
-    const Vector3d a2 = end * f2 + g;
-    const double h = 2 * step;
-    state.pose.translation += h * state.velocity + h * h / 6 * (a0 + 2 * a1);
-    state.velocity += h / 6 * (a0 + 4 * a1 + a2);
-    state.pose.rotation = end;
-  }
-  return state;
-}
 
 TEST(ImuSensor, WithoutNoiseIntegratesBackToTheTruth) {
   for (const char* scenario : {"box", "corridor", "hall", "office"}) {
@@ -58,7 +28,7 @@ TEST(ImuSensor, WithoutNoiseIntegratesBackToTheTruth) {
     const auto log = record(*simulation);
     const TrueState begin = simulation->state_at(simulation->start_time());
     const Integrated end =
-        integrate(log.imu, {begin.T_map_body, begin.v_map}, options.imu.gravity_map);
+        integrate(log.imu, {begin.T_map_body, begin.v_map}, options.imu.gravity_map, kStep);
     ASSERT_EQ(log.imu.size(), 6001U);
     const SE3 truth = simulation->truth_at(log.imu.back().t);
     EXPECT_LT(so3::angle_between(end.pose.rotation, truth.rotation),

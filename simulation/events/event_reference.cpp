@@ -1,0 +1,29 @@
+#include "simulation/events/event_reference.hpp"
+
+namespace holdfast::simulation {
+
+std::string event_reference() {
+  return "# Events\n\n"
+         "`--event NAME@T0[+DURATION]`, seconds from the start; may be given more than once.\n\n"
+         "| event | lasts | what happens |\n|---|---|---|\n"
+         "| `blind` | 2 s | the LiDAR's clouds are empty |\n"
+         "| `lidar_off` | 2 s | no scan is a message |\n"
+         "| `imu_off` | 2 s | no IMU sample is a message |\n"
+         "| `imu_bias_jump` | at once | both IMU biases jump and stay |\n"
+         "| `kidnap` | at once | the body stands elsewhere on the route, 3 m or 45 degrees away at "
+         "least, and the IMU feels nothing |\n"
+         "| `kidnap` with a duration | | the LiDAR is covered, the robot stops, is lifted by up to "
+         "0.5 m, carried along the route to such a place within 3 m/s and 4 m/s^2, and stands "
+         "there "
+         "when the LiDAR is uncovered; the IMU feels all of it. The error of a duration that is "
+         "too "
+         "short says what is needed (about 4 s at 1.2 m/s) |\n"
+         "| `crowd` | 10 s | up to 28 people walk with the robot and round it in rings of about "
+         "1.2 "
+         "and 2.3 m, as far as there is room, and hide 50 to 80 % of the returns from within 15 m; "
+         "the robot goes at 1.2 m/s at most. They come and go where something hides them from the "
+         "LiDAR or more than 25 m away, or, in rooms without such a place, through a wall 3 m from "
+         "the robot or further, as if it had a door |\n\n";
+}
+
+}  // namespace holdfast::simulation
