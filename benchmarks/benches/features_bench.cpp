@@ -78,7 +78,7 @@ struct JudgedScan {
     return {p.x, p.y, p.z};
   }
   bool at_edge(std::uint32_t i) const { return (*truth)[i].edge_distance_m < kNearEdgeM; }
-  bool flat(std::uint32_t i) const { return !at_edge(i) && !(*truth)[i].person; }
+  bool flat(std::uint32_t i) const { return !at_edge(i) && !(*truth)[i].moving; }
 };
 
 void judge_edges(const JudgedScan& judged, const std::vector<Feature>& edges, Score& score) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "holdfast/core/fields.hpp"
+#include "simulation/motion/rides.hpp"
 #include "simulation/motion/route.hpp"
 #include "simulation/motion/trajectory.hpp"
 
@@ -72,11 +73,14 @@ class Drive {
   MotionState at(TimeNs t) const;
   TimeNs duration() const { return duration_; }
   const std::vector<Teleport>& teleports() const { return teleports_; }
+  /// In lifts, in order.
+  const std::vector<Ride>& rides() const { return rides_; }
 
  private:
   Drive() = default;
   std::vector<Trajectory> pieces_;  ///< one more than teleports
   std::vector<Teleport> teleports_;
+  std::vector<Ride> rides_;
   TimeNs duration_ = 0;
 };
 

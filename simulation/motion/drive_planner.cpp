@@ -45,6 +45,16 @@ double smooth_step(double x) {
   return x * x * x * (10 + x * (6 * x - 15));
 }
 
+/// `s`, or the next place far enough from the lifts of a route to begin a drive there.
+double off_lifts(const Route& route, double s) {
+  constexpr double kAway = 8.0;  // metres, and seconds or more: a cabin can come in time
+  for (const Route::Lift& lift : route.lifts()) {
+    const double past = std::remainder(s - lift.s, route.length());
+    if (std::abs(past) < kAway) s += kAway - past;
+  }
+  return s;
+}
+
 /// `pose` moved by the yaw-only transform that takes pose `a` to the place of pose `b`.
 PoseVector moved(const PoseVector& pose, const PoseVector& a, const PoseVector& b) {
   const double turn = b[3] - a[3];
@@ -77,6 +87,7 @@ DrivePlanner::DrivePlanner(const Route& route, const DriveStyle& style, std::uin
   courses_.push_back({back, SpeedLimit(back, style)});
   RandomStream start(seed, "drive.start");
   legs_.push_back({0, start.below(2), start.uniform(0, route.length()), 0});
+  legs_[0].s = off_lifts(courses_[legs_[0].course].route, legs_[0].s);
   RandomStream line(seed, "drive.line");
   weave_ = draw_waves(line, 25.0 / 7.0 * style.weave_length_m, style.weave_length_m);
   RandomStream pace(seed, "drive.pace");
@@ -90,6 +101,7 @@ DrivePlanner::DrivePlanner(const Route& route, const DriveStyle& style, std::uin
 void DrivePlanner::drive(std::optional<TimeNs> duration, const std::vector<TimeNs>& kidnaps) {
   gone_.assign(kLead, 0.0);
   speed_.assign(kLead, 0.0);
+  lifted_.assign(kLead, 0.0);
   std::optional<TimeNs> end = duration;
   auto kidnap = kidnaps.begin();
   double gone = 0;
@@ -102,11 +114,16 @@ void DrivePlanner::drive(std::optional<TimeNs> duration, const std::vector<TimeN
     }
     gone_.push_back(gone);
     speed_.push_back(speed);
+    lifted_.push_back(rides_.height(t));
     const double target = target_speed(t, gone, !duration);
     const double step = style_.acceleration_m_s2 * kKnotSeconds;
     speed += std::clamp(target - speed, -1.5 * step, step);
     gone += speed * kKnotSeconds;
-    if (!end && speed == 0 && t > from_seconds(style_.rest_s) + kReach) {
+    const bool was_riding = rides_.is_riding();
+    rides_.watch(t + kKnot, courses_[legs_.back().course].route, place_on(legs_.back(), gone),
+                 speed);
+    const bool rides = was_riding || rides_.is_riding();
+    if (!end && speed == 0 && !rides && t > from_seconds(style_.rest_s) + kReach) {
       end = (t + kReach) / kSecond * kSecond + 2 * kSecond;
     }
   }
@@ -119,6 +136,9 @@ double DrivePlanner::target_speed(TimeNs t, double gone, bool stop_at_distance) 
   const double seconds = to_seconds(t);
   const double pace = 1 + 0.05 * (pace_[0].at(seconds) + pace_[1].at(seconds));
   double target = pace * courses_[leg.course].limit.at(leg.s + gone - leg.gone);
+  const double s = place_on(leg, gone);
+  target =
+      std::min(target, rides_.speed_limit(courses_[leg.course].route, s, style_.acceleration_m_s2));
   if (stop_at_distance) {
     const double left = style_.distance_m - gone;
     if (left < 0.02) return 0;
@@ -136,6 +156,7 @@ void DrivePlanner::begin_leg(TimeNs t, double gone) {
   for (std::size_t course = 0; course < courses_.size(); ++course) {
     for (double s = 0; s < courses_[course].route.length(); s += kStep) {
       const Leg to{t, course, s, gone};
+      if (off_lifts(courses_[course].route, s) != s) continue;
       if (is_far(from, to)) candidates.emplace_back(course_difference(from, to, gone), to);
     }
   }
@@ -144,6 +165,8 @@ void DrivePlanner::begin_leg(TimeNs t, double gone) {
   for (const auto& [difference, leg] : candidates) best = std::min(best, difference);
   std::erase_if(candidates, [best](const auto& c) { return c.first > 1.2 * best + 0.05; });
   legs_.push_back(candidates[kidnap_random_.below(candidates.size())].second);
+  rides_.leave(t);
+  legs_.back().lifted = rides_.height(t);
 }
 
 bool DrivePlanner::is_far(const Leg& from, const Leg& to) const {
@@ -176,6 +199,13 @@ Route::Place DrivePlanner::place(const Leg& leg, double gone) const {
   return place;
 }
 
+/// While the robot rides. The route's height changes at once where its lift is.
+double DrivePlanner::height_above_route(const Leg& leg, std::size_t tick) const {
+  const Route& route = courses_[leg.course].route;
+  if (route.lifts().empty()) return 0;
+  return lifted_[tick] - leg.lifted - route.lifted(leg.s, place_on(leg, gone_[tick]));
+}
+
 std::size_t DrivePlanner::first_tick(std::size_t leg) const {
   return tick_at(legs_[leg].start) - kLead + kMeanReach;
 }
@@ -192,7 +222,7 @@ DrivePlanner::Controls DrivePlanner::plain_controls(std::size_t leg) const {
     const Route::Place at = place(legs_[leg], gone_[tick]);
     PoseVector pose;
     pose << at.position, at.heading, -std::atan(at.slope), 0;
-    pose[2] += style_.body_height_m;
+    pose[2] += style_.body_height_m + height_above_route(legs_[leg], tick);
     raw.push_back(pose);
   }
   return smoothed(std::move(raw));

@@ -7,6 +7,7 @@
 
 #include "holdfast/core/random.hpp"
 #include "simulation/motion/drive.hpp"
+#include "simulation/motion/rides.hpp"
 #include "simulation/motion/speed_limit.hpp"
 
 namespace holdfast::simulation {
@@ -26,6 +27,7 @@ class DrivePlanner {
   TimeNs leg_start(std::size_t leg) const { return legs_[leg].start; }
   /// Motion of each leg; a leg also covers some time before its start and after its end.
   std::vector<Trajectory> trajectories() const;
+  const std::vector<Ride>& rides() const { return rides_.rides(); }
 
  private:
   struct Course {  ///< the route in one direction
@@ -35,8 +37,9 @@ class DrivePlanner {
   struct Leg {
     TimeNs start;
     std::size_t course;
-    double s;     ///< on the course at the start of the leg
-    double gone;  ///< metres since the start of the log
+    double s;           ///< on the course at the start of the leg
+    double gone;        ///< metres since the start of the log
+    double lifted = 0;  ///< metres by which rides had lifted the robot until then
   };
   struct Wave {
     double frequency;
@@ -52,6 +55,8 @@ class DrivePlanner {
   void begin_leg(TimeNs t, double gone);
   double course_difference(const Leg& from, const Leg& to, double gone) const;
   bool is_far(const Leg& from, const Leg& to) const;
+  double place_on(const Leg& leg, double gone) const { return leg.s + gone - leg.gone; }
+  double height_above_route(const Leg& leg, std::size_t tick) const;
   Route::Place place(const Leg& leg, double gone) const;
   std::size_t first_tick(std::size_t leg) const;
   std::size_t last_tick(std::size_t leg) const;
@@ -64,8 +69,10 @@ class DrivePlanner {
   DriveStyle style_;
   std::vector<Course> courses_;
   std::vector<Leg> legs_;
-  std::vector<double> gone_;   ///< at each tick
-  std::vector<double> speed_;  ///< at each tick
+  std::vector<double> gone_;    ///< at each tick
+  std::vector<double> speed_;   ///< at each tick
+  std::vector<double> lifted_;  ///< metres by which rides have, at each tick
+  RideControl rides_;
   TimeNs duration_ = 0;
   TwoWaves weave_{};
   TwoWaves pace_{};
