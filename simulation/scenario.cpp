@@ -6,11 +6,12 @@
 
 #include "simulation/files/scenario_file.hpp"
 #include "simulation/scenarios/all.hpp"
+#include "simulation/scenarios/town.hpp"
 
 namespace holdfast::simulation {
 namespace {
 
-constexpr std::array<ScenarioInfo, 9> kScenarios = {{
+constexpr std::array<ScenarioInfo, 12> kScenarios = {{
     {"corridor", "50 x 3 m with doors, pilasters and boards; 100 m there and back", make_corridor},
     {"office", "10 x 8 m with desks, cabinets and five people walking; 200 m of rounds",
      make_office},
@@ -24,20 +25,36 @@ constexpr std::array<ScenarioInfo, 9> kScenarios = {{
      make_offices},
     {"garage", "40 x 24 m car park of two levels, one as the other, with ramps between; 260 m",
      make_garage},
+    {"campus",
+     "fire lane, walkway, plaza and street with traffic, six people; 1910 m there and back",
+     make_campus},
+    {"lift", "40 x 18 m, two floors that look alike and a lift that the robot takes; 300 m",
+     make_lift},
+    {"town", "0.1 km^2 of streets with traffic, each block another; town:2km2 is larger; 530 m",
+     make_town},
     {"box", "empty room of 12 x 8 x 4 m, for tests with closed forms; 30 m", make_box},
 }};
 
 }  // namespace
 
+namespace {
+
 /// From the files beside the sources, which were built in.
-Scenario make_garage() {
-  return *parse_scenario(std::string(scenario_text("garage.yaml")), "garage.yaml");
+Scenario from_file(const std::string& name) {
+  return *parse_scenario(std::string(scenario_text(name)), name);
 }
+
+}  // namespace
+
+Scenario make_garage() { return from_file("garage.yaml"); }
+Scenario make_campus() { return from_file("campus.yaml"); }
+Scenario make_lift() { return from_file("lift.yaml"); }
 
 std::span<const ScenarioInfo> scenarios() { return kScenarios; }
 
 Result<Scenario> make_scenario(std::string_view name) {
   if (name.ends_with(".yaml")) return read_scenario_file(name);
+  if (name.starts_with("town:")) return make_town(name);
   std::string known;
   for (const ScenarioInfo& info : kScenarios) {
     if (info.name == name) return info.make();

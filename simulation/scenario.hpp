@@ -8,12 +8,29 @@
 #include "holdfast/core/result.hpp"
 #include "simulation/motion/drive.hpp"
 #include "simulation/motion/route.hpp"
+#include "simulation/movers/lifts.hpp"
+#include "simulation/movers/vehicles.hpp"
 #include "simulation/world/walkers.hpp"
 #include "simulation/world/world.hpp"
 
 namespace holdfast::simulation {
 
-/// A world, the way a robot takes through it, and who else walks there. One file each in
+/// A stretch of a scenario's way by its name: a rectangle over the ground, in the map frame.
+struct Region {
+  std::string name;
+  Eigen::Vector2d min{0, 0};
+  Eigen::Vector2d max{1, 1};
+  bool has_name = false, has_min = false, has_max = false;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("name", self.name, FieldDoc{"what it is called"}, &self.has_name);
+    visit("min", self.min, FieldDoc{"corner x y"}, &self.has_min);
+    visit("max", self.max, FieldDoc{"opposite corner"}, &self.has_max);
+  }
+};
+
+/// A world, the way a robot takes through it, and who else walks and drives there. One file each in
 /// simulation/scenarios; a new one is declared in scenario.cpp.
 struct Scenario {
   std::string name;
@@ -21,6 +38,9 @@ struct Scenario {
   Route route;
   DriveStyle style;
   std::vector<WalkerPlan> walkers;
+  std::vector<VehiclePlan> vehicles;
+  std::vector<LiftPlan> lifts;
+  std::vector<Region> regions;  ///< for results of parts of the way; may be none
 };
 
 /// An entry of the list of scenarios.

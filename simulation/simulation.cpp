@@ -48,6 +48,13 @@ std::string hasty_carry(const Drive& drive) {
   return {};
 }
 
+std::vector<Mover> all_movers(const Scenario& scenario, const Drive& robot, const Walkers& people,
+                              std::uint64_t seed) {
+  std::vector<Mover> movers = drive_vehicles(scenario.vehicles, robot, people, seed);
+  for (Mover& mover : run_lifts(scenario.lifts, robot)) movers.push_back(std::move(mover));
+  return movers;
+}
+
 }  // namespace
 
 struct Simulation::Parts {
@@ -59,6 +66,7 @@ struct Simulation::Parts {
   WorkerPool pool;
   Drive drive;
   Walkers walkers;
+  Movers movers;
   std::size_t imu_samples;
   TimeNs first_scan;  ///< begin of the first revolution; times here count from the start of the log
   std::size_t scans;  ///< revolutions, those without a message included
@@ -103,6 +111,7 @@ Simulation::Parts::Parts(Scenario the_scenario, std::optional<ChangedWorld> chan
       pool(options.threads),
       drive(std::move(the_drive)),
       walkers(scenario.walkers, drive, options.seed),
+      movers(all_movers(scenario, drive, walkers, options.seed), scenario.world.materials),
       imu_samples(static_cast<std::size_t>(
           static_cast<double>(drive.duration()) * options.imu.rate_hz / 1e9 + 1 + 1e-9)),
       first_scan(from_seconds(RandomStream(options.seed, "lidar.phase").uniform(0.01, 0.06))),
@@ -113,7 +122,7 @@ Simulation::Parts::Parts(Scenario the_scenario, std::optional<ChangedWorld> chan
       lidar_clock(options.transport.lidar_clock, schedule.clock_jumps, options.seed),
       lost_imu(draw_losses(options.transport.imu_samples, imu_samples,
                            RandomStream(options.seed, "imu.losses"))),
-      around{caster, scenario.world.materials, drive, walkers, schedule.dark()} {
+      around{caster, scenario.world.materials, drive, walkers, movers, schedule.dark()} {
   scans =
       static_cast<std::size_t>(std::max<TimeNs>(log_end() - first_scan, 0) / options.lidar.period);
   for (const TimeSpan& span : schedule.crowds) {
@@ -322,7 +331,8 @@ std::vector<TrueReturn> Simulation::true_geometry(const Scan& scan) {
   since_start.end_time -= kEpoch;
   since_start = parts_->lidar_clock.in_true_time(since_start);
   return true_returns(since_start, parts_->kinds_of(since_start), parts_->options.lidar,
-                      parts_->drive, parts_->caster, parts_->walkers, *parts_->geometry);
+                      parts_->drive, parts_->caster, {parts_->walkers, parts_->movers},
+                      *parts_->geometry);
 }
 
 const std::vector<Segment>& Simulation::edges() {
@@ -342,11 +352,13 @@ io::PointCloud Simulation::survey_map() {
   model.height_m = p.scenario.style.body_height_m + p.options.lidar.T_body_lidar.translation.z();
   model.range_m = p.options.lidar.max_range_m;
   model.sigma_m = p.options.map_sigma_m;
-  if (!p.world_before) {
+  if (!p.world_before && p.scenario.lifts.empty()) {
     return survey(p.scenario.world, p.caster, p.scenario.route, model, p.options.seed, p.pool);
   }
-  const RayCaster caster(*p.world_before);
-  return survey(*p.world_before, caster, p.scenario.route, model, p.options.seed, p.pool);
+  const World before =
+      with_closed_doors(p.world_before ? *p.world_before : p.scenario.world, p.scenario.lifts);
+  const RayCaster caster(before);
+  return survey(before, caster, p.scenario.route, model, p.options.seed, p.pool);
 }
 
 }  // namespace holdfast::simulation

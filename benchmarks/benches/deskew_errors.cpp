@@ -90,7 +90,7 @@ PlacementErrors placement_errors(const Scan& scan, simulation::Simulation& drive
   std::array<Mean, kPlacements> edge;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const simulation::TrueReturn& hit = truth[i];
-    if (hit.person || !hit.is_surface()) continue;
+    if (hit.moving || !hit.is_surface()) continue;
     const ScanPoint& p = scan.points[i];
     const SE3 T_map_lidar = placer.T_map_lidar_at(p);
     const Vector3d across = hit.normal_map.cross(hit.edge_along_map);

@@ -80,7 +80,7 @@ struct JudgedScan {
   bool at_edge(std::uint32_t i) const { return (*truth)[i].edge_distance_m < kNearEdgeM; }
   bool flat(std::uint32_t i) const {
     const TrueReturn& hit = (*truth)[i];
-    return !at_edge(i) && !hit.person && hit.is_surface();
+    return !at_edge(i) && !hit.moving && hit.is_surface();
   }
 };
 

@@ -84,13 +84,17 @@ Way way_of(const Route& route, double clearance) {
 }
 
 /// Finds new places for objects.
-class Mover {
+class Rearranger {
  public:
-  Mover(const Scenario& scenario, RandomStream& random)
+  Rearranger(const Scenario& scenario, RandomStream& random)
       : world_(scenario.world), structure_(structure_of(scenario.world)), random_(random) {
     ways_.push_back(way_of(scenario.route, kRobotClearance + scenario.style.weave_m));
     for (const WalkerPlan& plan : scenario.walkers) {
       ways_.push_back(way_of(plan.route, kPersonClearance));
+    }
+    for (const VehiclePlan& plan : scenario.vehicles) {
+      const double half_width = 0.5 * vehicle_size(plan.kind).y();
+      ways_.push_back(way_of(plan.route, half_width + kPersonClearance));
     }
     corners_.resize(world_.objects.size());
     for (std::size_t i = 0; i < world_.triangles.size(); ++i) {
@@ -205,14 +209,14 @@ Result<ChangedWorld> change_world(const Scenario& scenario, double share, std::u
   RandomStream random(seed, "world.change");
   const auto count =
       static_cast<std::size_t>(std::lround(share * static_cast<double>(world.objects.size())));
-  Mover mover(scenario, random);
+  Rearranger rearranger(scenario, random);
   std::vector<Place> before = places_at_first(world);
   std::vector<Place> after = before;
   ChangedWorld out;
   for (const std::size_t object : draw_some(world.objects.size(), count, random)) {
     ChangeKind kind = draw_kind(world.objects[object], random);
     if (kind == ChangeKind::kMoved) {
-      after[object] = mover.move(object);
+      after[object] = rearranger.move(object);
       if (!after[object]) kind = ChangeKind::kRemoved;
     }
     if (kind == ChangeKind::kRemoved) after[object].reset();

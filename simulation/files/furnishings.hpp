@@ -1,5 +1,6 @@
 #pragma once
 
+#include "simulation/buildings/house.hpp"
 #include "simulation/files/solids.hpp"
 #include "simulation/world/furniture.hpp"
 
@@ -73,6 +74,35 @@ struct TreePart : RoundPart {
     visit("shape", self.shape, FieldDoc{"another number, another crown", 0, 1000});
   }
   void add_to(WorldBuilder& build) const { add_tree(build, at, height, shape); }
+};
+
+struct HousePart {
+  HousePlan plan;
+  int variant = 0;
+  std::string material = "brick";
+  bool has_min = false, has_max = false;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    HousePlan& p = self.plan;
+    visit("min", p.min, FieldDoc{"corner x y"}, &self.has_min);
+    visit("max", p.max, FieldDoc{"opposite corner"}, &self.has_max);
+    visit("ground", p.ground, FieldDoc{"height of its foot"});
+    visit("height", p.height, FieldDoc{"from its foot to the roof", 1, 300});
+    visit("storey", p.storey, FieldDoc{"height of each row of windows", 2.5, 20});
+    visit("window_step", p.window_step, FieldDoc{"from window to window, about", 2.2, 100});
+    visit("window_depth", p.window_depth, FieldDoc{"of their glass behind the wall", 0, 2});
+    visit("pillars", p.pillars, FieldDoc{"on each facade", 0, 1000});
+    visit("detailed_storeys", p.detailed_storeys, FieldDoc{"plain above these", 0, 100});
+    visit("variant", self.variant, FieldDoc{"another number, another house", 0, 1000000});
+    visit("material", self.material, material_doc());
+  }
+  void add_to(WorldBuilder& build) const {
+    HousePlan whole = plan;
+    whole.variant = static_cast<unsigned>(variant);
+    whole.material = material_of(material);
+    add_house(build, whole);
+  }
 };
 
 struct PartitionPart : StandingPart {

@@ -107,6 +107,25 @@ Status build_repeat(const YAML::Node& block, const std::string& file, WorldBuild
   return status;
 }
 
+struct MovedPart {
+  Eigen::Vector3d by{0, 0, 0};
+  bool has_by = false;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("by", self.by, FieldDoc{"x y z"}, &self.has_by);
+  }
+};
+
+Status build_moved(const YAML::Node& block, const std::string& file, WorldBuilder& build) {
+  MovedPart moved;
+  const std::string place = place_of(file, block);
+  if (auto read = read_part(without(block, {"parts"}), place, file, moved); !read) return read;
+  Status status = Done{};
+  build.moved(moved.by, [&] { status = build_parts(parts_of(block), file, build); });
+  return status;
+}
+
 struct ObjectPart {
   WorldObject object;
   bool has_name = false;
@@ -168,9 +187,12 @@ constexpr std::array kParts = {
     kind<TreePart>("tree", "deciduous tree"),
     kind<PolePart>("pole", "lamp post or sign"),
     kind<CarPart>("car", "parked car, 4.4 m long"),
+    kind<HousePart>("house", "house with windows, doors and pillars on all sides"),
     kind<RackPart>("rack", "pallet rack with loads, along y before it is turned"),
     PartKind{"repeat", "builds the list in `parts` several times", build_repeat,
              keys_of<RepeatPart>},
+    PartKind{"moved", "builds the list in `parts` elsewhere, as on another floor", build_moved,
+             keys_of<MovedPart>},
     PartKind{"object", "the list in `parts` is one object, which a changed world may move or lack",
              build_object, keys_of<ObjectPart>},
     PartKind{"spare", "parts that are not there unless a changed world brings them", build_spare,

@@ -27,8 +27,8 @@ class ScenarioReader {
 
   Result<Scenario> read(const YAML::Node& document) {
     if (!document.IsMap()) return expected(document, "a block of keys");
-    const auto keys =
-        check_keys(document, {"name", "summary", "world", "route", "drive", "people"});
+    const auto keys = check_keys(document, {"name", "summary", "world", "route", "drive", "people",
+                                            "vehicles", "lifts", "regions"});
     if (!keys) return keys.error();
     for (const char* key : {"world", "route"}) {
       if (!document[key]) return Error{fmt::format("{}: missing: '{}'", file_, key)};
@@ -47,6 +47,15 @@ class ScenarioReader {
     auto people = read_people(document["people"]);
     if (!people) return people.error();
     scenario.walkers = std::move(*people);
+    auto vehicles = read_vehicles(document["vehicles"]);
+    if (!vehicles) return vehicles.error();
+    scenario.vehicles = std::move(*vehicles);
+    auto lifts = read_list<LiftPlan>(document["lifts"], "a list of lifts");
+    if (!lifts) return lifts.error();
+    scenario.lifts = std::move(*lifts);
+    auto regions = read_list<Region>(document["regions"], "a list of regions");
+    if (!regions) return regions.error();
+    scenario.regions = std::move(*regions);
     return scenario;
   }
 
@@ -103,7 +112,12 @@ class ScenarioReader {
       if (!corner) return corner.error();
       const bool same =
           !corners.empty() && (corners.back().position - corner->position).head<2>().norm() < 1e-6;
-      if (same) return at(node, "the corner stands where the one before does");
+      if (same) {
+        const double rise_m = corner->position.z() - corners.back().position.z();
+        if (rise_m == 0) return at(node, "the corner stands where the one before does");
+        corners.back().ride_m = rise_m;
+        continue;
+      }
       corners.push_back(*corner);
     }
     return Route::closed(corners);
@@ -125,6 +139,50 @@ class ScenarioReader {
     return people;
   }
 
+  Result<std::vector<VehiclePlan>> read_vehicles(const YAML::Node& list) const {
+    std::vector<VehiclePlan> vehicles;
+    if (!list) return vehicles;
+    if (!list.IsSequence()) return expected(list, "a list of vehicles");
+    for (const YAML::Node& node : list) {
+      if (!node.IsMap()) return expected(node, "a route, a speed_m_s and a kind");
+      if (auto keys = check_keys(node, {"route", "speed_m_s", "kind"}); !keys) return keys.error();
+      auto route = read_route(node["route"]);
+      if (!route) return route.error();
+      const double speed_m_s = node["speed_m_s"].as<double>(VehiclePlan{*route}.speed_m_s);
+      if (!(speed_m_s > 0 && speed_m_s <= 40)) return expected(node["speed_m_s"], "0 to 40");
+      const auto kind = read_kind(node["kind"]);
+      if (!kind) return kind.error();
+      vehicles.push_back({std::move(*route), speed_m_s, *kind});
+    }
+    return vehicles;
+  }
+
+  template <class Entry>
+  Result<std::vector<Entry>> read_list(const YAML::Node& list, std::string_view what) const {
+    std::vector<Entry> entries;
+    if (!list) return entries;
+    if (!list.IsSequence()) return expected(list, what);
+    for (const YAML::Node& node : list) {
+      Entry entry;
+      Fields fields;
+      io::collect_fields("", entry, fields);
+      if (auto read = io::read_block(node, file_, fields); !read) return read.error();
+      const std::string place = fmt::format("{}:{}", file_, node.Mark().line + 1);
+      if (auto all = io::check_required(place, fields); !all) return all.error();
+      entries.push_back(std::move(entry));
+    }
+    return entries;
+  }
+
+  Result<VehicleKind> read_kind(const YAML::Node& node) const {
+    if (!node) return VehicleKind::kCar;
+    const std::string name = node.as<std::string>("");
+    for (const VehicleKind kind : kAllVehicleKinds) {
+      if (name == vehicle_name(kind)) return kind;
+    }
+    return expected(node, "car, van or bus");
+  }
+
   std::string file_;
 };
 
@@ -135,6 +193,14 @@ Result<Scenario> scenario_of(const Result<YAML::Node>& document, const std::stri
   } catch (const YAML::Exception& e) {
     return Error{fmt::format("{}:{}: {}", file, e.mark.line + 1, e.msg)};
   }
+}
+
+template <class Block>
+std::string keys_of(const char* name) {
+  Block block;
+  Fields fields;
+  io::collect_fields(name, block, fields);
+  return io::config_reference(fields);
 }
 
 }  // namespace
@@ -148,36 +214,36 @@ Result<Scenario> parse_scenario(const std::string& text, const std::string& name
 }
 
 std::string scenario_reference() {
-  DriveStyle style;
-  Fields fields;
-  io::collect_fields("drive", style, fields);
   return fmt::format(
-             "# Scenario files\n\n"
-             "`holdfast simulate FILE.yaml --out DIR` drives through a world that a file "
-             "describes:\n\n"
-             "```yaml\nname: shed\nworld:\n  - floor: {{min: [0, 0], max: [20, 10]}}\n"
-             "  - wall: {{from: [0, 0], to: [20, 0], top: 4, openings: [{{start: 3, width: "
-             "1.2}}]}}\n"
-             "  - repeat:\n      times: 4\n      step: [4, 0, 0]\n      parts:\n"
-             "        - cylinder: {{base: [4, 5, 0], radius: 0.25, height: 4}}\n"
-             "route:\n  radius_m: 1.5\n  corners: [[2, 2], [18, 2], [18, 8], [2, 8]]\n"
-             "drive: {{speed_m_s: 1.5}}\n```\n\n"
-             "Lengths are metres, z is up, and walls are seen from the left of the way from their "
-             "first\n"
-             "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or\n"
-             "`[x, y, z, radius_m]`. `people` is a list of a `route` and a `speed_m_s` each.\n"
-             "[garage.yaml](../simulation/scenarios/garage.yaml) is a whole one.\n\n"
-             "{}\n## Parts of the world\n\n{}{}"
-             "# Lidar files\n\n"
-             "`--lidar FILE.yaml` takes a LiDAR from a file; `--lidar NAME` one of {}.\n"
-             "The block `faults` says what it does wrong, by default nothing; `--faults lidar` "
-             "gives any\n"
-             "LiDAR the usual sizes. Rain and dust (`--rain`, `--visibility`) are none of the "
-             "sensor's:\n"
-             "they weaken returns, which limits the reach, and return some light themselves.\n\n{}",
-             io::config_reference(fields), part_reference(), event_reference(), fmt::join(lidar_names(), ", "),
-             lidar_reference()) +
-         "\n" + imu_reference() + "\n" + fault_reference();
+      "# Scenario files\n\n"
+      "`holdfast simulate FILE.yaml --out DIR` drives through a world that a file describes:\n\n"
+      "```yaml\nname: shed\nworld:\n  - floor: {{min: [0, 0], max: [20, 10]}}\n"
+      "  - wall: {{from: [0, 0], to: [20, 0], top: 4, openings: [{{start: 3, width: 1.2}}]}}\n"
+      "  - repeat:\n      times: 4\n      step: [4, 0, 0]\n      parts:\n"
+      "        - cylinder: {{base: [4, 5, 0], radius: 0.25, height: 4}}\n"
+      "route:\n  radius_m: 1.5\n  corners: [[2, 2], [18, 2], [18, 8], [2, 8]]\n"
+      "drive: {{speed_m_s: 1.5}}\n```\n\n"
+      "Lengths are metres, z is up, and walls are seen from the left of the way from their first\n"
+      "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or\n"
+      "`[x, y, z, radius_m]`. `people` is a list of a `route` and a `speed_m_s` each, `vehicles`\n"
+      "likewise with a `kind` (car, van, bus); they keep to the direction of their routes. Who\n"
+      "walks or drives waits where the robot comes near. `regions` names stretches of the way:\n"
+      "a list of a `name` and a rectangle, `min` and `max`. Where a corner of the robot's route "
+      "stands\n"
+      "straight above the one before, a lift takes the robot there; `lifts` says what it looks "
+      "like\n"
+      "([lift.yaml](../simulation/scenarios/lift.yaml)).\n"
+      "[garage.yaml](../simulation/scenarios/garage.yaml) is a whole one.\n\n"
+      "{}\n{}\n{}\n## Parts of the world\n\n{}{}"
+      "# Lidar files\n\n"
+      "`--lidar FILE.yaml` takes a LiDAR from a file; `--lidar NAME` one of {}.\n"
+      "The block `faults` says what it does wrong, by default nothing; `--faults lidar` gives any\n"
+      "LiDAR the usual sizes. Rain and dust (`--rain`, `--visibility`) are none of the sensor's:\n"
+      "they weaken returns, which limits the reach, and return some light themselves.\n\n"
+      "{}\n{}\n{}",
+      keys_of<DriveStyle>("drive"), keys_of<LiftPlan>("lifts"), keys_of<Region>("regions"),
+      part_reference(), event_reference(), fmt::join(lidar_names(), ", "), lidar_reference(),
+      imu_reference(), fault_reference());
 }
 
 }  // namespace holdfast::simulation

@@ -39,6 +39,7 @@ Drive Drive::plan(const Route& route, const DriveStyle& style, std::uint64_t see
   Drive drive;
   drive.duration_ = planner.duration();
   drive.pieces_ = planner.trajectories();
+  drive.rides_ = planner.rides();
   for (std::size_t leg = 1; leg < planner.legs(); ++leg) {
     const TimeNs t = planner.leg_start(leg);
     drive.starts_.push_back(t);

@@ -6,6 +6,7 @@
 
 #include "holdfast/core/fields.hpp"
 #include "simulation/events/time_span.hpp"
+#include "simulation/motion/rides.hpp"
 #include "simulation/motion/route.hpp"
 #include "simulation/motion/trajectory.hpp"
 
@@ -111,6 +112,8 @@ class Drive {
   const std::vector<Teleport>& teleports() const { return teleports_; }
   /// Those that began before the end.
   const std::vector<Carry>& carries() const { return carries_; }
+  /// In lifts, in order.
+  const std::vector<Ride>& rides() const { return rides_; }
 
  private:
   Drive() = default;
@@ -118,6 +121,7 @@ class Drive {
   std::vector<TimeNs> starts_;  ///< of the pieces but for the first
   std::vector<Teleport> teleports_;
   std::vector<Carry> carries_;
+  std::vector<Ride> rides_;
   TimeNs duration_ = 0;
 };
 

@@ -49,6 +49,16 @@ constexpr double kWobbleSpeed = 0.3;  // m/s from which on the wobble is full
 TimeNs tick_time(std::size_t tick) { return (static_cast<TimeNs>(tick) - TimeNs{kLead}) * kKnot; }
 std::size_t tick_at(TimeNs t) { return static_cast<std::size_t>(t / kKnot) + kLead; }
 
+/// `s`, or the next place far enough from the lifts of a route to begin a drive there.
+double off_lifts(const Route& route, double s) {
+  constexpr double kAway = 8.0;  // metres, and seconds or more: a cabin can come in time
+  for (const Route::Lift& lift : route.lifts()) {
+    const double past = std::remainder(s - lift.s, route.length());
+    if (std::abs(past) < kAway) s += kAway - past;
+  }
+  return s;
+}
+
 /// `pose` moved by the yaw-only transform that takes pose `a` to the place of pose `b`.
 PoseVector moved(const PoseVector& pose, const PoseVector& a, const PoseVector& b) {
   const double turn = b[3] - a[3];
@@ -83,6 +93,7 @@ DrivePlanner::DrivePlanner(const Route& route, const DriveStyle& style, std::uin
   courses_.push_back({back, SpeedLimit(back, style)});
   RandomStream start(seed, "drive.start");
   legs_.push_back({0, start.below(2), start.uniform(0, way.length()), 0});
+  legs_[0].s = off_lifts(courses_[legs_[0].course].route, legs_[0].s);
   RandomStream line(seed, "drive.line");
   weave_ = draw_waves(line, 25.0 / 7.0 * style.weave_length_m, style.weave_length_m);
   RandomStream pace(seed, "drive.pace");
@@ -97,10 +108,11 @@ void DrivePlanner::drive(std::optional<TimeNs> duration, const std::vector<TimeN
                          const std::vector<TimeSpan>& carries) {
   gone_.assign(kLead, 0.0);
   speed_.assign(kLead, 0.0);
+  lifted_.assign(kLead, 0.0);
   std::optional<TimeNs> end = duration;
   auto kidnap = kidnaps.begin();
   auto carry = carries.begin();
-  bool lifted = false;
+  bool picked_up = false;
   double gone = 0;
   double speed = 0;
   for (std::size_t tick = kLead; !end || tick_time(tick) < *end + TimeNs{kTail + 1} * kKnot;
@@ -111,18 +123,23 @@ void DrivePlanner::drive(std::optional<TimeNs> duration, const std::vector<TimeN
     }
     gone_.push_back(gone);
     speed_.push_back(speed);
-    if (carry != carries.end() && lifted && t >= carry->end + kReach) {
+    lifted_.push_back(rides_.height(t));
+    if (carry != carries.end() && picked_up && t >= carry->end + kReach) {
       ++carry;
-      lifted = false;
+      picked_up = false;
     }
     const bool held = carry != carries.end() && carry->begin <= t;
-    if (held && !lifted) lifted = lift(*carry, tick);
+    if (held && !picked_up && !rides_.is_riding()) picked_up = pick_up(*carry, tick);
     const double target = held ? 0 : target_speed(t, gone, !duration);
     const double step = style_.acceleration_m_s2 * kKnotSeconds;
     const double brake = held ? std::max(1.5 * step, kHeldBrake * kKnotSeconds) : 1.5 * step;
     speed += std::clamp(target - speed, -brake, step);
     gone += speed * kKnotSeconds;
-    if (!end && speed == 0 && !held && t > from_seconds(style_.rest_s) + kReach) {
+    const bool was_riding = rides_.is_riding();
+    rides_.watch(t + kKnot, courses_[legs_.back().course].route, place_on(legs_.back(), gone),
+                 speed);
+    const bool rides = was_riding || rides_.is_riding();
+    if (!end && speed == 0 && !held && !rides && t > from_seconds(style_.rest_s) + kReach) {
       end = (t + kReach) / kSecond * kSecond + 2 * kSecond;
     }
   }
@@ -136,6 +153,9 @@ double DrivePlanner::target_speed(TimeNs t, double gone, bool stop_at_distance) 
   const double pace = 1 + 0.5 * style_.pace_share * (pace_[0].at(seconds) + pace_[1].at(seconds));
   double target = pace * courses_[leg.course].limit.at(leg.s + gone - leg.gone);
   target = std::min(target, crowd_limit(t));
+  const double s = place_on(leg, gone);
+  target =
+      std::min(target, rides_.speed_limit(courses_[leg.course].route, s, style_.acceleration_m_s2));
   if (stop_at_distance) {
     const double left = style_.distance_m - gone;
     if (left < 0.02) return 0;
@@ -164,6 +184,7 @@ void DrivePlanner::begin_leg(TimeNs t, double gone) {
   for (std::size_t course = 0; course < courses_.size(); ++course) {
     for (double s = 0; s < courses_[course].route.length(); s += kStep) {
       const Leg to{t, course, s, gone};
+      if (off_lifts(courses_[course].route, s) != s) continue;
       if (is_far(from, to)) candidates.emplace_back(course_difference(from, to, gone), to);
     }
   }
@@ -172,6 +193,8 @@ void DrivePlanner::begin_leg(TimeNs t, double gone) {
   for (const auto& [difference, leg] : candidates) best = std::min(best, difference);
   std::erase_if(candidates, [best](const auto& c) { return c.first > 1.2 * best + 0.05; });
   legs_.push_back(candidates[kidnap_random_.below(candidates.size())].second);
+  rides_.leave(t);
+  legs_.back().lifted = rides_.height(t);
 }
 
 bool DrivePlanner::is_far(const Leg& from, const Leg& to) const {
@@ -192,7 +215,7 @@ double DrivePlanner::course_difference(const Leg& from, const Leg& to, double go
 }
 
 /// Carries the robot from where it stands at `tick`, once it stands; false if it does not yet.
-bool DrivePlanner::lift(const TimeSpan& carry, std::size_t tick) {
+bool DrivePlanner::pick_up(const TimeSpan& carry, std::size_t tick) {
   constexpr std::size_t kStill = kMeanReach + kSplineReach;
   const double gone = gone_[tick];
   if (gone_[tick - kStill] != gone) return false;
@@ -209,7 +232,9 @@ bool DrivePlanner::lift(const TimeSpan& carry, std::size_t tick) {
   }
   const auto reach = static_cast<TimeNs>(needed + kSplineReach + 1);
   needed_for_carries_.push_back(in_time ? 0 : tick_time(begin) + reach * kKnot - carry.begin);
-  if (in_time) legs_.push_back(candidates[kidnap_random_.below(candidates.size())]);
+  if (!in_time) return true;
+  legs_.push_back(candidates[kidnap_random_.below(candidates.size())]);
+  legs_.back().lifted = rides_.height(tick_time(tick));
   return true;
 }
 
@@ -229,7 +254,9 @@ std::vector<DrivePlanner::Leg> DrivePlanner::carry_candidates(std::size_t begin,
       static_cast<int>(kCarryReach * static_cast<double>(ticks) * kKnotSeconds / kStep);
   for (int i = -most; i <= most; ++i) {
     const double way = i * kStep;
-    const double turned_s = courses_[from.course].route.reversed_s(s + way);
+    const Route& route = courses_[from.course].route;
+    if (off_lifts(route, s + way) != s + way) continue;
+    const double turned_s = route.reversed_s(s + way);
     const TimeNs start = tick_time(begin - kSplineReach);
     for (const Leg& to : {Leg{start, from.course, s + way, gone, begin + ticks, way},
                           Leg{start, 1 - from.course, turned_s, gone, begin + ticks, way}}) {
@@ -269,6 +296,13 @@ PoseVector DrivePlanner::pose(const Leg& leg, double gone) const {
   return pose;
 }
 
+/// While the robot rides. The route's height changes at once where its lift is.
+double DrivePlanner::height_above_route(const Leg& leg, std::size_t tick) const {
+  const Route& route = courses_[leg.course].route;
+  if (route.lifts().empty()) return 0;
+  return lifted_[tick] - leg.lifted - route.lifted(leg.s, place_on(leg, gone_[tick]));
+}
+
 std::size_t DrivePlanner::first_tick(std::size_t leg) const {
   return tick_at(legs_[leg].start) - kLead + kMeanReach;
 }
@@ -283,6 +317,7 @@ DrivePlanner::Controls DrivePlanner::plain_controls(std::size_t leg) const {
   for (std::size_t tick = first_tick(leg) - kMeanReach; tick <= last_tick(leg) + kMeanReach;
        ++tick) {
     raw.push_back(pose(legs_[leg], gone_[tick]));
+    raw.back()[2] += height_above_route(legs_[leg], tick);
   }
   return smoothed(std::move(raw));
 }

@@ -9,6 +9,7 @@
 #include "simulation/motion/drive.hpp"
 #include "simulation/motion/person/carry.hpp"
 #include "simulation/motion/person/gait.hpp"
+#include "simulation/motion/rides.hpp"
 #include "simulation/motion/speed_limit.hpp"
 
 namespace holdfast::simulation {
@@ -38,6 +39,7 @@ class DrivePlanner {
   const std::vector<TimeNs>& needed_for_carries() const { return needed_for_carries_; }
   /// Motion of each leg; a leg also covers some time before its start and after its end.
   std::vector<Trajectory> trajectories() const;
+  const std::vector<Ride>& rides() const { return rides_.rides(); }
 
  private:
   struct Course {  ///< the route in one direction
@@ -51,6 +53,7 @@ class DrivePlanner {
     double gone;               ///< metres since the start of the log
     std::size_t put_down = 0;  ///< tick until which the body is carried; 0: it is not
     double carried_m = 0;      ///< along the course of the leg before
+    double lifted = 0;         ///< metres by which rides had lifted the robot until then
   };
   struct Wave {
     double frequency;
@@ -65,11 +68,13 @@ class DrivePlanner {
   double target_speed(TimeNs t, double gone, bool stop_at_distance) const;
   double crowd_limit(TimeNs t) const;
   void begin_leg(TimeNs t, double gone);
-  bool lift(const TimeSpan& carry, std::size_t tick);
+  bool pick_up(const TimeSpan& carry, std::size_t tick);
   std::vector<Leg> carry_candidates(std::size_t begin, std::size_t ticks, double gone_before) const;
   CarryPath carry_path(const Leg& from, const Leg& to) const;
   double course_difference(const Leg& from, const Leg& to, double gone) const;
   bool is_far(const Leg& from, const Leg& to) const;
+  double place_on(const Leg& leg, double gone) const { return leg.s + gone - leg.gone; }
+  double height_above_route(const Leg& leg, std::size_t tick) const;
   Route::Place place(const Leg& leg, double gone) const;
   PoseVector pose(const Leg& leg, double gone) const;
   std::size_t first_tick(std::size_t leg) const;
@@ -85,8 +90,10 @@ class DrivePlanner {
   DriveStyle style_;
   std::vector<Course> courses_;
   std::vector<Leg> legs_;
-  std::vector<double> gone_;   ///< at each tick
-  std::vector<double> speed_;  ///< at each tick
+  std::vector<double> gone_;    ///< at each tick
+  std::vector<double> speed_;   ///< at each tick
+  std::vector<double> lifted_;  ///< metres by which rides have, at each tick
+  RideControl rides_;
   TimeNs duration_ = 0;
   std::vector<TimeSpan> crowds_;
   std::vector<TimeNs> needed_for_carries_;

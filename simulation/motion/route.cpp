@@ -25,17 +25,18 @@ struct Rounding {
 
 Rounding round_corner(const Eigen::Vector3d& before, const RouteCorner& corner,
                       const Eigen::Vector3d& after) {
+  const Eigen::Vector3d up(0, 0, corner.ride_m);
   const Eigen::Vector3d in = corner.position - before;
-  const Eigen::Vector3d out = after - corner.position;
+  const Eigen::Vector3d out = after - corner.position - up;
   const double in_length = in.head<2>().norm();
   const double out_length = out.head<2>().norm();
   assert(in_length > kShortest && out_length > kShortest);
   const double heading = std::atan2(in.y(), in.x());
   const double turn = wrapped(std::atan2(out.y(), out.x()) - heading);
   const double half_tan = std::tan(0.5 * std::abs(turn));
-  if (corner.on_spot) return {corner.position, corner.position, heading, turn, 0};
+  if (corner.on_spot) return {corner.position, corner.position + up, heading, turn, 0};
   const double cut = std::min({corner.radius_m * half_tan, 0.5 * in_length, 0.5 * out_length});
-  return {corner.position - in * (cut / in_length), corner.position + out * (cut / out_length),
+  return {corner.position - in * (cut / in_length), corner.position + up + out * (cut / out_length),
           heading, turn, half_tan > kShortest ? cut / half_tan : 0.0};
 }
 
@@ -50,21 +51,23 @@ Route Route::closed(const std::vector<RouteCorner>& corners) {
   assert(n >= 3);
   std::vector<Rounding> roundings;
   for (std::size_t i = 0; i < n; ++i) {
-    roundings.push_back(
-        round_corner(corners[(i + n - 1) % n].position, corners[i], corners[(i + 1) % n].position));
+    const RouteCorner& before = corners[(i + n - 1) % n];
+    const Eigen::Vector3d left = before.position + Eigen::Vector3d(0, 0, before.ride_m);
+    roundings.push_back(round_corner(left, corners[i], corners[(i + 1) % n].position));
   }
   Route route;
   route.corners_ = corners;
   double heading = roundings[0].heading;
   for (std::size_t i = 0; i < n; ++i) {
     const Rounding& r = roundings[i];
-    const double rise = r.end.z() - r.begin.z();
+    const double rise = r.end.z() - r.begin.z() - corners[i].ride_m;
     const double arc = std::abs(r.turn) * r.radius;
     if (corners[i].on_spot) {
       route.append({0, spot_length(r.turn), r.begin, 0, heading, 0, r.turn});
     }
     route.append({0, arc, r.begin, rise, heading, arc > 0 ? r.turn / arc : 0});
     heading += r.turn;
+    if (corners[i].ride_m != 0) route.lifts_.push_back({route.length_, corners[i].ride_m});
     const Eigen::Vector3d straight = roundings[(i + 1) % n].begin - r.end;
     route.append({0, straight.head<2>().norm(), r.end, straight.z(), heading, 0});
     route.last_straight_ = straight.head<2>().norm();
@@ -115,8 +118,21 @@ Route::Place Route::on_spot(const Piece& piece, double along, double turned) {
   return place;
 }
 
+double Route::lifted(double s, double to) const {
+  double sum = 0;
+  for (const Lift& lift : lifts_) {
+    const auto passed = [&](double place) { return std::floor((place - lift.s) / length_); };
+    sum += (passed(to) - passed(s)) * lift.rise_m;
+  }
+  return sum;
+}
+
 Route Route::reversed() const {
   std::vector<RouteCorner> corners(corners_.rbegin(), corners_.rend());
+  for (RouteCorner& corner : corners) {
+    corner.position.z() += corner.ride_m;
+    corner.ride_m = -corner.ride_m;
+  }
   return closed(corners);
 }
 

@@ -10,6 +10,7 @@ struct RouteCorner {
   Eigen::Vector3d position;  ///< on the ground
   double radius_m = 1.0;     ///< of the rounding; shortened where the neighbours are too close
   bool on_spot = false;      ///< no rounding: one stops, turns and goes on
+  double ride_m = 0;         ///< a lift takes the robot up by so much here; below 0 down
 };
 
 /// A closed way over the ground: straights and arcs, tangent to each other. Heights change linearly
@@ -35,6 +36,15 @@ class Route {
   };
   Place at(double s) const;
   double length() const { return length_; }
+
+  /// A place where the way goes on so much higher.
+  struct Lift {
+    double s;
+    double rise_m;
+  };
+  const std::vector<Lift>& lifts() const { return lifts_; }
+  /// Metres by which lifts raise the way from `s` to `to` (that of a lift at `to` included).
+  double lifted(double s, double to) const;
   Route reversed() const;
   /// The same corners; at those that turn by `least_turn` (rad) or more, one turns on the spot.
   Route turning_on_spot(double least_turn) const;
@@ -56,6 +66,7 @@ class Route {
 
   std::vector<RouteCorner> corners_;
   std::vector<Piece> pieces_;
+  std::vector<Lift> lifts_;
   double length_ = 0;
   double last_straight_ = 0;  ///< length from the last corner to the first
   double turning_ = 0;        ///< of one round, rad

@@ -10,6 +10,9 @@ namespace holdfast::simulation {
 /// The text of a scenario file in this folder ("garage.yaml").
 std::string_view scenario_text(std::string_view file);
 
+Scenario make_campus();
+Scenario make_lift();
+Scenario make_town();
 Scenario make_garage();
 Scenario make_box();
 Scenario make_corridor();

@@ -72,6 +72,23 @@ class PeopleAt {
   TimeNs time_ = 0;
 };
 
+/// Shortens `range` to the nearest mover before it, if any.
+bool meets_mover(const Movers& movers, const Ray& ray, TimeNs t, double& range, Vector3d& normal) {
+  bool met = false;
+  for (std::size_t i = 0; i < movers.size(); ++i) {
+    const MotionState state = movers.at(i, t);
+    const Vector3d way = state.T_map_body.translation - ray.origin;
+    const double aside = way.cross(ray.direction).norm();
+    MoverHit hit;
+    if (aside > movers.radius(i)) continue;
+    if (!movers.meets(i, state, 0, ray.origin, ray.direction, 0, range, hit)) continue;
+    met = true;
+    range = hit.range;
+    normal = hit.normal_map;
+  }
+  return met;
+}
+
 /// The rays of up to eight points from `first` on; those that are missing repeat the last.
 RayPacket packet_of(const std::vector<Ray>& rays, std::size_t first) {
   RayPacket packet;
@@ -111,11 +128,11 @@ TrueReturn no_surface(ReturnKind kind, const Ray& ray, const ScanPoint& point) {
 
 std::vector<TrueReturn> true_returns(const Scan& scan, const std::vector<ReturnKind>& kinds,
                                      const LidarModel& lidar, const Drive& drive,
-                                     const RayCaster& caster, const Walkers& walkers,
+                                     const RayCaster& caster, const MovingThings& moving,
                                      const TrueGeometry& geometry) {
   const std::vector<Ray> rays = rays_of(scan, lidar, drive);
   std::vector<TrueReturn> out(rays.size());
-  PeopleAt people(walkers);
+  PeopleAt people(moving.walkers);
   HitPacket hits;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::size_t lane = i % RayPacket::kSize;
@@ -131,14 +148,15 @@ std::vector<TrueReturn> true_returns(const Scan& scan, const std::vector<ReturnK
     }
     double range = std::min<double>(hits.range[lane], lidar.max_range_m);
     const TimeNs t = scan.stamp + scan.points[i].time_offset_ns;
-    truth.person = people.meets(ray, t, range, truth.normal_map);
+    truth.moving = people.meets(ray, t, range, truth.normal_map);
+    truth.moving |= meets_mover(moving.movers, ray, t, range, truth.normal_map);
     truth.point_map = ray.origin + range * ray.direction;
-    if (!truth.person) {
+    if (!truth.moving) {
       const Vector3d normal = geometry.normal(hits.triangle[lane]);
       truth.normal_map = normal.dot(ray.direction) > 0 ? Vector3d(-normal) : normal;
     }
     const auto edge =
-        truth.person ? TrueGeometry::NearEdge() : geometry.nearest_edge(truth.point_map);
+        truth.moving ? TrueGeometry::NearEdge() : geometry.nearest_edge(truth.point_map);
     truth.edge_distance_m = edge.distance_m;
     truth.edge_along_map = edge.along;
   }

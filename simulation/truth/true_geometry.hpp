@@ -4,6 +4,7 @@
 
 #include "holdfast/core/sensor_data.hpp"
 #include "simulation/motion/drive.hpp"
+#include "simulation/movers/movers.hpp"
 #include "simulation/sensors/lidar/lidar_model.hpp"
 #include "simulation/sensors/lidar/return_kind.hpp"
 #include "simulation/truth/segment_grid.hpp"
@@ -21,7 +22,7 @@ struct TrueReturn {
   double edge_distance_m = 0;
   Eigen::Vector3d edge_along_map =
       Eigen::Vector3d::Zero();  ///< unit; zero without an edge in reach
-  bool person = false;          ///< met someone walking: no edges are looked for
+  bool moving = false;          ///< met someone or something that moves: no edges are looked for
   /// Only kSurface has a true surface. Of other returns point_map is where the measured range puts
   /// them, the normal is zero, and no edges are looked for.
   ReturnKind kind = ReturnKind::kSurface;
@@ -56,12 +57,18 @@ class TrueGeometry {
   SegmentGrid grid_;
 };
 
+/// What moves in a world besides the robot.
+struct MovingThings {
+  const Walkers& walkers;
+  const Movers& movers;
+};
+
 /// Casts the ray of each return of `scan` again, from where the LiDAR was at the return's own time,
 /// and says what it met: one entry a point, in the order of the points. Times of the scan count
 /// from the start of the log. `kinds` says of each point where it comes from.
 std::vector<TrueReturn> true_returns(const Scan& scan, const std::vector<ReturnKind>& kinds,
                                      const LidarModel& lidar, const Drive& drive,
-                                     const RayCaster& caster, const Walkers& walkers,
+                                     const RayCaster& caster, const MovingThings& moving,
                                      const TrueGeometry& geometry);
 
 }  // namespace holdfast::simulation

@@ -42,6 +42,10 @@ struct WallPlan {
 /// material is known by its name.
 class WorldBuilder {
  public:
+  WorldBuilder() = default;
+  /// Goes on with a world.
+  explicit WorldBuilder(World world) : world_(std::move(world)) {}
+
   /// Four corners of a flat quadrilateral, counter-clockwise seen from its front.
   void quad(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
             const Eigen::Vector3d& d, const Material& material);

@@ -69,7 +69,7 @@ TEST(Scenario, RobotsKeepClearOfEverything) {
 }
 
 TEST(Scenario, RobotsKeepClearInChangedWorlds) {
-  for (const char* name : {"office", "offices", "yard", "warehouse"}) {
+  for (const char* name : {"office", "offices", "yard", "warehouse", "lift", "town"}) {
     const Scenario scenario = *make_scenario(name);
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const auto changed = change_world(scenario, 0.5, seed);
@@ -166,6 +166,54 @@ TEST(Scenario, WaysAreAsLongAsTheArticleSays) {
   EXPECT_EQ(make_scenario("corridor")->style.distance_m, 100);
   EXPECT_EQ(make_scenario("office")->style.distance_m, 200);
   EXPECT_EQ(make_scenario("hall")->style.distance_m, 150);
+  EXPECT_NEAR(make_scenario("campus")->route.length(), 1910, 1);
+  EXPECT_EQ(make_scenario("campus")->style.distance_m, 1910);
+}
+
+/// 360 m of fire lane, 100 m of walkway, 50 m of plaza and 140 m of street, there and back.
+TEST(Scenario, TheCampusGoesThroughItsFourRegions) {
+  const Scenario campus = *make_scenario("campus");
+  const std::vector<std::pair<std::string, double>> lengths = {
+      {"fire lane", 360}, {"walkway", 100}, {"plaza", 50}, {"street", 140}};
+  ASSERT_EQ(campus.regions.size(), lengths.size());
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    const Region& region = campus.regions[i];
+    EXPECT_EQ(region.name, lengths[i].first);
+    double within = 0;
+    for (double s = 0; s < campus.route.length(); s += 0.1) {
+      const Vector2d p = campus.route.at(s).position.head<2>();
+      const bool in = (p - region.min).minCoeff() >= 0 && (region.max - p).minCoeff() >= 0;
+      within += in ? 0.1 : 0;
+    }
+    EXPECT_NEAR(within, 2 * lengths[i].second, 8) << region.name;
+  }
+}
+
+void expect_polite_vehicles(const Scenario& scenario, std::uint64_t seed) {
+  const Drive robot = Drive::plan(scenario.route, scenario.style, seed, 300 * kSecond, {});
+  const Walkers people(scenario.walkers, robot, seed);
+  std::vector<Material> materials;
+  const Movers vehicles(drive_vehicles(scenario.vehicles, robot, people, seed), materials);
+  EXPECT_GE(2 * vehicles.size(), scenario.vehicles.size()) << scenario.name << " seed " << seed;
+  const RayCaster caster(scenario.world);
+  for (TimeNs t = 0; t < robot.duration(); t += kSecond / 5) {
+    for (std::size_t i = 0; i < vehicles.size(); ++i) {
+      const SE3 pose = vehicles.at(i, t).T_map_body;
+      const Vector3d robot_there = pose.inverse() * robot.at(t).T_map_body.translation;
+      const Vector2d half = 0.5 * vehicles.boxes(i).front().size.head<2>();
+      ASSERT_GT((robot_there.head<2>().cwiseAbs() - half).cwiseMax(0).norm(), 0.95);
+      ASSERT_GT(clearance(caster, pose.translation + Vector3d(0, 0, 0.5)), half.y())
+          << scenario.name << ": " << pose.translation.transpose();
+    }
+  }
+}
+
+TEST(Scenario, VehiclesKeepOffTheRobotAndOffWalls) {
+  for (const char* name : {"campus", "town"}) {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+      expect_polite_vehicles(*make_scenario(name), seed);
+    }
+  }
 }
 
 TEST(Scenario, AnUnknownNameIsAnErrorWithTheKnownOnes) {

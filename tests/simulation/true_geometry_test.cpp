@@ -121,7 +121,7 @@ TEST(TrueGeometry, WithoutNoiseEachReturnLiesWhereItsRayMetTheWorld) {
       ASSERT_LT(off, kRayInWorld) << name << " point " << i;
       ASSERT_LE(truth[i].normal_map.dot(p - T_map_lidar.translation), 0) << "faces the LiDAR";
       ASSERT_NEAR(truth[i].normal_map.norm(), 1, 1e-6);
-      ASSERT_FALSE(truth[i].person);
+      ASSERT_FALSE(truth[i].moving);
     }
   }
 }
@@ -153,7 +153,7 @@ TEST(TrueGeometry, KnowsReturnsFromPeople) {
   for (const Scan& scan : record(*simulation).scans) {
     const auto truth = simulation->true_geometry(scan);
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      if (!truth[i].person) continue;
+      if (!truth[i].moving) continue;
       ++people;
       const SE3 T_map_lidar = simulation->truth_at(scan.stamp + scan.points[i].time_offset_ns) *
                               simulation->options().lidar.T_body_lidar;

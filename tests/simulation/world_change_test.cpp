@@ -186,7 +186,7 @@ TEST(WorldChange, TheSurveySeesTheWorldBeforeAndTheDriveTheWorldAfter) {
   std::vector<Vector3f> seen;
   for (const Scan& scan : record(*simulation).scans) {
     for (const auto& truth : simulation->true_geometry(scan)) {
-      if (!truth.person) seen.push_back(truth.point_map.cast<float>());
+      if (!truth.moving) seen.push_back(truth.point_map.cast<float>());
     }
   }
   auto before = corners_by_object(change.before);

@@ -133,6 +133,19 @@ void LidarSensor::cast_chunk(Chunk& chunk, const Surroundings& around) const {
   }
 }
 
+/// Whether rays of the chunk may meet a ball.
+bool LidarSensor::may_see(const Chunk& chunk, const Vector3d& center, double radius) const {
+  const ColumnPose& middle = chunk.poses[chunk.columns() / 2];
+  const Vector3f heading = directions_[(chunk.begin + chunk.columns() / 2) * model_.beams.size()];
+  const double half_width =
+      std::numbers::pi * static_cast<double>(chunk.columns() + 2) / model_.columns;
+  const Vector3f there = middle.rotation.transpose() * (center.cast<float>() - middle.origin);
+  const double distance = there.head<2>().norm();
+  const double azimuth = std::atan2(there.y(), there.x()) - std::atan2(heading.y(), heading.x());
+  const double ball_width = distance > radius ? std::asin(radius / distance) : 4;
+  return std::abs(std::remainder(azimuth, 2 * std::numbers::pi)) <= half_width + ball_width;
+}
+
 /// Puts people in front of what the static world returned. A ray sees them where they are at its
 /// own time: their shapes are taken at the middle of the chunk and move on with their velocity.
 void LidarSensor::cast_walkers(Chunk& chunk, const Surroundings& around) const {
@@ -141,18 +154,9 @@ void LidarSensor::cast_walkers(Chunk& chunk, const Surroundings& around) const {
       chunk.scan_begin + (column_times_[chunk.begin] + column_times_[chunk.end - 1]) / 2;
   std::vector<Capsule> shapes;
   around.walkers.shapes_at(middle, shapes);
-  const ColumnPose& center = chunk.poses[chunk.columns() / 2];
-  const Vector3f heading = directions_[(chunk.begin + chunk.columns() / 2) * beams];
-  const double half_width =
-      std::numbers::pi * static_cast<double>(chunk.columns() + 2) / model_.columns;
   for (std::size_t first = 0; first < shapes.size(); first += Walkers::kCapsulesEach) {
     const Ball ball = ball_around(&shapes[first], Walkers::kCapsulesEach);
-    const Vector3f there =
-        center.rotation.transpose() * (ball.center.cast<float>() - center.origin);
-    const double distance = there.head<2>().norm();
-    const double azimuth = std::atan2(there.y(), there.x()) - std::atan2(heading.y(), heading.x());
-    const double ball_width = distance > ball.radius ? std::asin(ball.radius / distance) : 4;
-    if (std::abs(std::remainder(azimuth, 2 * std::numbers::pi)) > half_width + ball_width) continue;
+    if (!may_see(chunk, ball.center, ball.radius)) continue;
     for (std::size_t i = 0; i < chunk.range.size(); ++i) {
       const std::size_t column = i / beams;
       const TimeNs fired = fire_time(chunk.begin + column, i % beams) + chunk.scan_begin;
@@ -174,6 +178,41 @@ void LidarSensor::cast_walkers(Chunk& chunk, const Surroundings& around) const {
         chunk.material[i] = kWalker;
       }
     }
+  }
+}
+
+/// Likewise with vehicles and whatever else moves as a rigid body.
+void LidarSensor::cast_movers(Chunk& chunk, const Surroundings& around) const {
+  const TimeNs middle =
+      chunk.scan_begin + (column_times_[chunk.begin] + column_times_[chunk.end - 1]) / 2;
+  for (std::size_t mover = 0; mover < around.movers.size(); ++mover) {
+    const Vector3d center = around.movers.at(mover, middle).T_map_body.translation;
+    if (!may_see(chunk, center, around.movers.radius(mover))) continue;
+    cast_mover(chunk, around.movers, mover, middle);
+  }
+}
+
+void LidarSensor::cast_mover(Chunk& chunk, const Movers& movers, std::size_t mover,
+                             TimeNs middle) const {
+  const std::size_t beams = model_.beams.size();
+  const MotionState state = movers.at(mover, middle);
+  for (std::size_t i = 0; i < chunk.range.size(); ++i) {
+    const std::size_t column = i / beams;
+    const TimeNs fired = fire_time(chunk.begin + column, i % beams) + chunk.scan_begin;
+    const auto since_column = static_cast<float>(to_seconds(model_.beams[i % beams].fire_offset));
+    const ColumnPose& pose = chunk.poses[column];
+    const Vector3f& direction = directions_[chunk.begin * beams + i];
+    const Vector3f origin = pose.origin + since_column * pose.velocity;
+    const Vector3f d = pose.rotation * direction + since_column * (pose.rotation_rate * direction);
+    const double max_range = std::min<double>(chunk.range[i], model_.max_range_m);
+    MoverHit hit;
+    if (!movers.meets(mover, state, to_seconds(fired - middle), origin.cast<double>(),
+                      d.cast<double>(), model_.min_range_m, max_range, hit)) {
+      continue;
+    }
+    chunk.range[i] = static_cast<float>(hit.range);
+    chunk.cos_incidence[i] = static_cast<float>(hit.cos_incidence);
+    chunk.material[i] = hit.material;
   }
 }
 
@@ -275,6 +314,7 @@ std::vector<LidarSensor::Chunk> LidarSensor::cast(std::size_t index, TimeNs begi
     prepare_chunk(chunk, around);
     cast_chunk(chunk, around);
     if (around.walkers.size() > 0) cast_walkers(chunk, around);
+    cast_movers(chunk, around);
     if (!returns_) measure_chunk(chunk, around);
   };
   for_each_chunk(pool, column_times_.size(), kChunkColumns, work);

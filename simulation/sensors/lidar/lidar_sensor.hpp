@@ -9,6 +9,7 @@
 #include "holdfast/core/sensor_data.hpp"
 #include "simulation/events/time_span.hpp"
 #include "simulation/motion/drive.hpp"
+#include "simulation/movers/movers.hpp"
 #include "simulation/sensors/lidar/lidar_model.hpp"
 #include "simulation/sensors/lidar/return_kind.hpp"
 #include "simulation/sensors/lidar/returns/return_model.hpp"
@@ -23,6 +24,7 @@ struct Surroundings {
   const std::vector<Material>& materials;
   const Drive& drive;
   const Walkers& walkers;
+  const Movers& movers;
   std::vector<TimeSpan> blind;  ///< when the LiDAR sees nothing
 };
 
@@ -61,6 +63,9 @@ class LidarSensor {
   TimeNs fire_time(std::size_t column, std::size_t beam) const;
   void cast_chunk(Chunk& chunk, const Surroundings& around) const;
   void cast_walkers(Chunk& chunk, const Surroundings& around) const;
+  void cast_movers(Chunk& chunk, const Surroundings& around) const;
+  void cast_mover(Chunk& chunk, const Movers& movers, std::size_t mover, TimeNs middle) const;
+  bool may_see(const Chunk& chunk, const Eigen::Vector3d& center, double radius) const;
   void measure_chunk(Chunk& chunk, const Surroundings& around) const;
 
   // With faults or weather.

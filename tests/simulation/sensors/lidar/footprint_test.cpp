@@ -215,7 +215,7 @@ TEST(Footprint, MixesPeopleWithWhatStandsBehindThem) {
     for (std::size_t i = 0; i < before[s].points.size(); ++i) {
       const ScanPoint& p = before[s].points[i];
       place[{before[s].stamp + p.time_offset_ns, p.ring}] = i;
-      people += truth_before[i].person ? 1 : 0;
+      people += truth_before[i].moving ? 1 : 0;
     }
     for (std::size_t i = 0; i < after[s].points.size(); ++i) {
       const ScanPoint& p = after[s].points[i];
@@ -226,7 +226,7 @@ TEST(Footprint, MixesPeopleWithWhatStandsBehindThem) {
         continue;
       }
       if (!is_mixed) ASSERT_EQ(p.x, before[s].points[found->second].x);
-      mixed_people += truth_before[found->second].person && is_mixed ? 1 : 0;
+      mixed_people += truth_before[found->second].moving && is_mixed ? 1 : 0;
     }
   }
   EXPECT_GT(people, 500U);
