@@ -37,6 +37,10 @@ std::string events_text(const Simulation& simulation) {
   return text;
 }
 
+std::string remark_line(const Scenario& scenario) {
+  return scenario.remark.empty() ? "" : fmt::format("# {}\n", scenario.remark);
+}
+
 }  // namespace
 
 std::string pose_text(const SE3& pose) {
@@ -53,6 +57,7 @@ std::string robot_config(Simulation& simulation) {
   const auto& q = lidar.T_body_lidar.rotation;
   return fmt::format(
       "# simulated: scenario {}, seed {}\n"
+      "{}"
       "# initial_pose: {}\n"
       "T_body_lidar: [{}, {}, {}, {}, {}, {}, {}]\n"
       "imu:\n"
@@ -62,9 +67,10 @@ std::string robot_config(Simulation& simulation) {
       "  accel_bias_walk: {}\n"
       "lidar:\n"
       "  range_sigma_m: {}\n",
-      simulation.scenario().name, simulation.options().seed, pose_text(simulation.initial_pose()),
-      p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), imu.gyro_noise_density,
-      imu.accel_noise_density, imu.gyro_bias_walk, imu.accel_bias_walk, lidar.range_sigma_m);
+      simulation.scenario().name, simulation.options().seed, remark_line(simulation.scenario()),
+      pose_text(simulation.initial_pose()), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(),
+      imu.gyro_noise_density, imu.accel_noise_density, imu.gyro_bias_walk, imu.accel_bias_walk,
+      lidar.range_sigma_m);
 }
 
 Status write_log(Simulation& simulation, const std::filesystem::path& folder,

@@ -18,7 +18,7 @@ Status write_log(Simulation& simulation, const std::filesystem::path& folder,
                  const Progress& progress);
 
 /// config.yaml of the simulated robot: T_body_lidar and the noise of its sensors, and the initial
-/// pose as a comment `# initial_pose: x y z qx qy qz qw`.
+/// pose as a comment `# initial_pose: x y z qx qy qz qw`; above it the scenario's remark, if any.
 std::string robot_config(Simulation& simulation);
 
 /// "x y z qx qy qz qw" with 6 decimals for metres and 9 for the quaternion.

@@ -21,6 +21,7 @@ struct Scenario {
   Route route;
   DriveStyle style;
   std::vector<WalkerPlan> walkers;
+  std::string remark;  ///< for the user, about a way that was found; empty: none
 };
 
 /// An entry of the list of scenarios.
@@ -33,8 +34,8 @@ struct ScenarioInfo {
 /// All scenarios, in the order in which `holdfast simulate --list` shows them.
 std::span<const ScenarioInfo> scenarios();
 
-/// Builds a scenario of that name, or the one in a file whose name ends in .yaml. The error lists
-/// the known names.
+/// Builds a scenario of that name, or the one in a file whose name ends in .yaml, or drives through
+/// a cloud or mesh whose name ends in .pcd, .ply or .obj. The error lists the known names.
 Result<Scenario> make_scenario(std::string_view name);
 
 }  // namespace holdfast::simulation

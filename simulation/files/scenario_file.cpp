@@ -8,6 +8,7 @@
 
 #include "holdfast/io/yaml_block.hpp"
 #include "simulation/files/part_files.hpp"
+#include "simulation/files/world_file.hpp"
 #include "simulation/sensors/lidar/lidar_file.hpp"
 
 namespace holdfast::simulation {
@@ -35,9 +36,7 @@ class ScenarioReader {
     WorldBuilder build;
     if (auto built = build_parts(document["world"], file_, build); !built) return built.error();
     scenario.world = build.build();
-    auto route = read_route(document["route"]);
-    if (!route) return route.error();
-    scenario.route = std::move(*route);
+    if (auto way = read_way(document["route"], scenario); !way) return way.error();
     if (document["drive"]) {
       if (auto drive = read_block(document["drive"], scenario.style); !drive) return drive.error();
     }
@@ -86,8 +85,20 @@ class ScenarioReader {
     return RouteCorner{{v[0], v[1], v[2]}, v[3]};
   }
 
+  /// The robot's route: laid out, or to be found in the world.
+  Status read_way(const YAML::Node& node, Scenario& scenario) const {
+    if (node.IsScalar() && node.Scalar() == "auto") {
+      const Status found = find_way(scenario);
+      return found ? found : at(node, found.error().message);
+    }
+    auto route = read_route(node);
+    if (!route) return route.error();
+    scenario.route = std::move(*route);
+    return Done{};
+  }
+
   Result<Route> read_route(const YAML::Node& block) const {
-    if (!block || !block.IsMap()) return expected(block, "a route: corners and radius_m");
+    if (!block || !block.IsMap()) return expected(block, "a route: corners and radius_m, or auto");
     if (auto keys = check_keys(block, {"corners", "radius_m"}); !keys) return keys.error();
     const double radius_m = block["radius_m"].as<double>(1.0);
     const YAML::Node list = block["corners"];
@@ -159,7 +170,11 @@ std::string scenario_reference() {
       "drive: {{speed_m_s: 1.5}}\n```\n\n"
       "Lengths are metres, z is up, and walls are seen from the left of the way from their first\n"
       "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or\n"
-      "`[x, y, z, radius_m]`. `people` is a list of a `route` and a `speed_m_s` each.\n"
+      "`[x, y, z, radius_m]`. `route: auto` finds a way: from one end of the drivable ground to "
+      "the\n"
+      "other, and back another way where there is one. `people` is a list of a `route` and a\n"
+      "`speed_m_s` each. Files of a `mesh` or a `cloud` are looked up beside the scenario file;\n"
+      "`holdfast simulate FILE.pcd` (or .ply, .obj) drives through one as it is.\n"
       "[garage.yaml](../simulation/scenarios/garage.yaml) is a whole one.\n\n"
       "{}\n## Parts of the world\n\n{}"
       "# Lidar files\n\n"
