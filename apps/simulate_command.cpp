@@ -83,6 +83,10 @@ void print_changes(const simulation::Simulation& simulation) {
               count(simulation::ChangeKind::kAdded));
 }
 
+void print_remark(const simulation::Scenario& scenario) {
+  if (!scenario.remark.empty()) std::printf("%s\n", scenario.remark.c_str());
+}
+
 simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
   simulation::SimulationOptions options;
   options.scenario = arguments.scenario;
@@ -120,7 +124,9 @@ void simulate(const SimulateArguments& arguments) {
   }
   if (arguments.scenario.empty()) {
     throw CommandFailed{
-        2, "simulate: expected a SCENARIO (--list shows them) or a file that ends in .yaml"};
+        2,
+        "simulate: expected a SCENARIO (--list shows them) or a file that ends in .yaml, "
+        ".pcd, .ply or .obj"};
   }
   if (arguments.out.empty()) throw CommandFailed{2, "simulate: expected --out DIR"};
   auto simulation = simulation::Simulation::create(options_of(arguments));
@@ -132,6 +138,7 @@ void simulate(const SimulateArguments& arguments) {
   std::printf("%zu scans, %.1f s\n", (*simulation)->scan_count(),
               to_seconds((*simulation)->end_time() - (*simulation)->start_time()));
   print_changes(**simulation);
+  print_remark((*simulation)->scenario());
   std::printf("the drive begins at --initial-pose \"%s\"\n", pose.c_str());
 }
 
@@ -238,7 +245,8 @@ void add_simulate_command(CLI::App& app) {
   command->add_option(
       "SCENARIO", arguments->scenario,
       "world to drive through (--list shows them), or a file that ends in .yaml and "
-      "describes one (--reference says how)");
+      "describes one (--reference says how), or a cloud or mesh that is one (.pcd, .ply, .obj), "
+      "through which a way is then looked for");
   command
       ->add_option("--out", arguments->out,
                    "folder for run.bag, truth.tum, events.jsonl, map.pcd and config.yaml")

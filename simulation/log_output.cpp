@@ -118,6 +118,8 @@ std::string lidar_remarks(const SimulationOptions& options) {
 std::string remarks(const Simulation& simulation) {
   const SimulationOptions& options = simulation.options();
   std::string text = lidar_remarks(options);
+  const std::string& remark = simulation.scenario().remark;
+  if (!remark.empty()) text += fmt::format("# {}\n", remark);
   if (!options.extrinsics_error.is_none()) {
     text += "# true_T_body_lidar: " + pose_list(options.lidar.T_body_lidar) + "\n";
   }

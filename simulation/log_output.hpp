@@ -20,8 +20,9 @@ Status write_log(Simulation& simulation, const std::filesystem::path& folder,
                  const Progress& progress);
 
 /// config.yaml of the simulated robot: T_body_lidar as it is stated and the noise of its sensors,
-/// and as comments the initial pose (`# initial_pose: x y z qx qy qz qw`) and, where options ask
-/// for them, the true T_body_lidar, the LiDAR's clock, and where GNSS is measured.
+/// and as comments the initial pose (`# initial_pose: x y z qx qy qz qw`), the scenario's remark
+/// and, where options ask for them, the true T_body_lidar, the LiDAR's clock, and where GNSS is
+/// measured.
 std::string robot_config(Simulation& simulation);
 
 /// "x y z qx qy qz qw" with 6 decimals for metres and 9 for the quaternion.

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "simulation/files/scenario_file.hpp"
+#include "simulation/files/world_file.hpp"
 #include "simulation/scenarios/all.hpp"
 #include "simulation/scenarios/town.hpp"
 
@@ -55,13 +56,16 @@ std::span<const ScenarioInfo> scenarios() { return kScenarios; }
 Result<Scenario> make_scenario(std::string_view name) {
   if (name.ends_with(".yaml")) return read_scenario_file(name);
   if (name.starts_with("town:")) return make_town(name);
+  if (is_world_file(name)) return read_world_file(name);
   std::string known;
   for (const ScenarioInfo& info : kScenarios) {
     if (info.name == name) return info.make();
     known += fmt::format("{}{}", known.empty() ? "" : ", ", info.name);
   }
-  return Error{fmt::format("unknown scenario '{}'; known are: {}, and files that end in .yaml",
-                           name, known)};
+  return Error{
+      fmt::format("unknown scenario '{}'; known are: {}, and files that end in .yaml, "
+                  ".pcd, .ply or .obj",
+                  name, known)};
 }
 
 }  // namespace holdfast::simulation

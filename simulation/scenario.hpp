@@ -41,6 +41,7 @@ struct Scenario {
   std::vector<VehiclePlan> vehicles;
   std::vector<LiftPlan> lifts;
   std::vector<Region> regions;  ///< for results of parts of the way; may be none
+  std::string remark;           ///< for the user, about a way that was found; empty: none
 };
 
 /// An entry of the list of scenarios.
@@ -53,8 +54,8 @@ struct ScenarioInfo {
 /// All scenarios, in the order in which `holdfast simulate --list` shows them.
 std::span<const ScenarioInfo> scenarios();
 
-/// Builds a scenario of that name, or the one in a file whose name ends in .yaml. The error lists
-/// the known names.
+/// Builds a scenario of that name, or the one in a file whose name ends in .yaml, or drives through
+/// a cloud or mesh whose name ends in .pcd, .ply or .obj. The error lists the known names.
 Result<Scenario> make_scenario(std::string_view name);
 
 }  // namespace holdfast::simulation

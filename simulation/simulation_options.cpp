@@ -71,7 +71,7 @@ std::string complaint(const Scenario& scenario, const SimulationOptions& options
     return fmt::format("lidar with {} beams, {} columns and a period of {} ns: expected some",
                        lidar.beams.size(), lidar.columns, lidar.period);
   }
-  if (scenario.world.triangles.empty()) {
+  if (scenario.world.is_empty()) {
     return fmt::format("scenario '{}': its world has no surface", scenario.name);
   }
   if (options.duration_s && !(*options.duration_s >= 0.5 && *options.duration_s <= 1e6)) {

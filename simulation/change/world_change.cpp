@@ -37,6 +37,7 @@ World placed(const World& world, const std::vector<Place>& places) {
   out.vertices = world.vertices;
   out.materials = world.materials;
   out.objects = world.objects;
+  out.discs = world.discs;
   for (std::size_t i = 0; i < world.triangles.size(); ++i) {
     auto triangle = world.triangles[i];
     const std::uint16_t object = world.object_of[i];

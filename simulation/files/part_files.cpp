@@ -6,6 +6,7 @@
 #include <array>
 
 #include "holdfast/io/yaml_block.hpp"
+#include "simulation/files/model_files.hpp"
 #include "simulation/files/storage.hpp"
 
 namespace holdfast::simulation {
@@ -153,6 +154,16 @@ Status build_spare(const YAML::Node& block, const std::string& file, WorldBuilde
   return status;
 }
 
+/// What stands in a file of its own.
+template <class Part>
+Status build_model(const YAML::Node& block, const std::string& file, WorldBuilder& build) {
+  Part part;
+  const std::string place = place_of(file, block);
+  if (auto read = read_part(block, place, file, part); !read) return read;
+  const Status added = part.add_to(build, file);
+  return added ? added : at(file, block, added.error().message);
+}
+
 struct PartKind {
   std::string_view name;
   std::string_view summary;
@@ -189,6 +200,9 @@ constexpr std::array kParts = {
     kind<CarPart>("car", "parked car, 4.4 m long"),
     kind<HousePart>("house", "house with windows, doors and pillars on all sides"),
     kind<RackPart>("rack", "pallet rack with loads, along y before it is turned"),
+    PartKind{"mesh", "triangles of a .ply or .obj file", build_model<MeshPart>, keys_of<MeshPart>},
+    PartKind{"cloud", "points of a .pcd or .ply file, as discs that close its surfaces",
+             build_model<CloudPart>, keys_of<CloudPart>},
     PartKind{"repeat", "builds the list in `parts` several times", build_repeat,
              keys_of<RepeatPart>},
     PartKind{"moved", "builds the list in `parts` elsewhere, as on another floor", build_moved,

@@ -10,6 +10,7 @@
 #include "simulation/events/event_reference.hpp"
 #include "simulation/files/fault_reference.hpp"
 #include "simulation/files/part_files.hpp"
+#include "simulation/files/world_file.hpp"
 #include "simulation/sensors/imu/imu_file.hpp"
 #include "simulation/sensors/lidar/lidar_file.hpp"
 
@@ -38,9 +39,7 @@ class ScenarioReader {
     WorldBuilder build;
     if (auto built = build_parts(document["world"], file_, build); !built) return built.error();
     scenario.world = build.build();
-    auto route = read_route(document["route"]);
-    if (!route) return route.error();
-    scenario.route = std::move(*route);
+    if (auto way = read_way(document["route"], scenario); !way) return way.error();
     if (document["drive"]) {
       if (auto drive = read_block(document["drive"], scenario.style); !drive) return drive.error();
     }
@@ -98,8 +97,20 @@ class ScenarioReader {
     return RouteCorner{{v[0], v[1], v[2]}, v[3]};
   }
 
+  /// The robot's route: laid out, or to be found in the world.
+  Status read_way(const YAML::Node& node, Scenario& scenario) const {
+    if (node.IsScalar() && node.Scalar() == "auto") {
+      const Status found = find_way(scenario);
+      return found ? found : at(node, found.error().message);
+    }
+    auto route = read_route(node);
+    if (!route) return route.error();
+    scenario.route = std::move(*route);
+    return Done{};
+  }
+
   Result<Route> read_route(const YAML::Node& block) const {
-    if (!block || !block.IsMap()) return expected(block, "a route: corners and radius_m");
+    if (!block || !block.IsMap()) return expected(block, "a route: corners and radius_m, or auto");
     if (auto keys = check_keys(block, {"corners", "radius_m"}); !keys) return keys.error();
     const double radius_m = block["radius_m"].as<double>(1.0);
     const YAML::Node list = block["corners"];
@@ -225,14 +236,20 @@ std::string scenario_reference() {
       "drive: {{speed_m_s: 1.5}}\n```\n\n"
       "Lengths are metres, z is up, and walls are seen from the left of the way from their first\n"
       "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or\n"
-      "`[x, y, z, radius_m]`. `people` is a list of a `route` and a `speed_m_s` each, `vehicles`\n"
+      "`[x, y, z, radius_m]`; `route: auto` finds a way: from one end of the drivable ground to "
+      "the\n"
+      "other, and back another way where there is one. `people` is a list of a `route` and a\n"
+      "`speed_m_s` each, `vehicles`\n"
       "likewise with a `kind` (car, van, bus); they keep to the direction of their routes. Who\n"
       "walks or drives waits where the robot comes near. `regions` names stretches of the way:\n"
       "a list of a `name` and a rectangle, `min` and `max`. Where a corner of the robot's route "
       "stands\n"
       "straight above the one before, a lift takes the robot there; `lifts` says what it looks "
       "like\n"
-      "([lift.yaml](../simulation/scenarios/lift.yaml)).\n"
+      "([lift.yaml](../simulation/scenarios/lift.yaml)). Files of a `mesh` or a `cloud` are "
+      "looked\n"
+      "up beside the scenario file; `holdfast simulate FILE.pcd` (or .ply, .obj) drives through\n"
+      "one as it is.\n"
       "[garage.yaml](../simulation/scenarios/garage.yaml) is a whole one.\n\n"
       "{}\n{}\n{}\n## Parts of the world\n\n{}{}"
       "# Lidar files\n\n"

@@ -22,14 +22,6 @@ TrueGeometry::NearEdge TrueGeometry::nearest_edge(const Vector3d& p_map) const {
   return nearest;
 }
 
-Vector3d TrueGeometry::normal(std::size_t triangle) const {
-  Vector3d p[3];
-  for (int k = 0; k < 3; ++k) {
-    p[k] = world_.vertices[world_.triangles[triangle][k]].cast<double>();
-  }
-  return (p[1] - p[0]).cross(p[2] - p[0]).normalized();
-}
-
 namespace {
 
 /// The ray of a return, in the map frame.
@@ -152,7 +144,7 @@ std::vector<TrueReturn> true_returns(const Scan& scan, const std::vector<ReturnK
     truth.moving |= meets_mover(moving.movers, ray, t, range, truth.normal_map);
     truth.point_map = ray.origin + range * ray.direction;
     if (!truth.moving) {
-      const Vector3d normal = geometry.normal(hits.triangle[lane]);
+      const Vector3d normal = normal_of(geometry.world(), hits.triangle[lane]);
       truth.normal_map = normal.dot(ray.direction) > 0 ? Vector3d(-normal) : normal;
     }
     const auto edge =

@@ -30,8 +30,8 @@ struct TrueReturn {
   bool is_surface() const { return kind == ReturnKind::kSurface; }
 };
 
-/// What a world's surfaces are like, for judging features: edges as `true_edges` defines them, and
-/// the normals of its triangles. Thread-safe once made, which takes up to some seconds.
+/// What a world's surfaces are like, for judging features: edges as `true_edges` defines them
+/// (discs have none). Thread-safe once made, which takes up to some seconds.
 class TrueGeometry {
  public:
   /// Edges further away than this, in metres, are not looked for.
@@ -48,8 +48,7 @@ class TrueGeometry {
   };
   NearEdge nearest_edge(const Eigen::Vector3d& p_map) const;
 
-  /// Of a triangle of the world, unit length, on its front.
-  Eigen::Vector3d normal(std::size_t triangle) const;
+  const World& world() const { return world_; }
 
  private:
   const World& world_;

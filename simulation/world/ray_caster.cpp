@@ -8,6 +8,61 @@
 #include <limits>
 
 namespace holdfast::simulation {
+namespace {
+
+constexpr unsigned kMesh = 0;  // Embree's numbers of the geometries
+constexpr unsigned kDiscs = 1;
+
+template <class T>
+T* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t words,
+              std::size_t count) {
+  return static_cast<T*>(
+      rtcSetNewGeometryBuffer(geometry, type, 0, format, words * sizeof(T), count));
+}
+
+void attach(RTCScene scene, RTCGeometry geometry, unsigned id) {
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+void attach_triangles(RTCDevice device, RTCScene scene, const World& world) {
+  RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices =
+      new_buffer<float>(mesh, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3, world.vertices.size());
+  for (const auto& v : world.vertices) vertices = std::copy_n(v.data(), 3, vertices);
+  auto* corners = new_buffer<std::uint32_t>(mesh, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 3,
+                                            world.triangles.size());
+  for (const auto& t : world.triangles) corners = std::copy_n(t.data(), 3, corners);
+  attach(scene, mesh, kMesh);
+}
+
+void attach_discs(RTCDevice device, RTCScene scene, const std::vector<Disc>& discs) {
+  RTCGeometry points = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
+  auto* centers =
+      new_buffer<float>(points, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4, discs.size());
+  auto* normals =
+      new_buffer<float>(points, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, 3, discs.size());
+  for (const Disc& disc : discs) {
+    centers = std::copy_n(disc.center.data(), 3, centers);
+    *centers++ = disc.radius;
+    normals = std::copy_n(disc.normal.data(), 3, normals);
+  }
+  attach(scene, points, kDiscs);
+}
+
+}  // namespace
+
+Eigen::Vector3d normal_of(const World& world, std::size_t surface) {
+  if (surface >= world.triangles.size()) {
+    return world.discs[surface - world.triangles.size()].normal.cast<double>();
+  }
+  Eigen::Vector3d p[3];
+  for (int k = 0; k < 3; ++k) {
+    p[k] = world.vertices[world.triangles[surface][k]].cast<double>();
+  }
+  return (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+}
 
 struct RayCaster::Embree {
   RTCDevice device = nullptr;
@@ -22,12 +77,8 @@ struct RayCaster::Embree {
 namespace {
 
 std::vector<Eigen::Vector3f> normals_of(const World& world) {
-  std::vector<Eigen::Vector3f> normals;
-  normals.reserve(world.triangles.size());
-  for (const auto& [a, b, c] : world.triangles) {
-    const Eigen::Vector3f& from = world.vertices[a];
-    normals.push_back((world.vertices[b] - from).cross(world.vertices[c] - from).normalized());
-  }
+  std::vector<Eigen::Vector3f> normals(world.triangles.size() + world.discs.size());
+  for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = normal_of(world, i).cast<float>();
   return normals;
 }
 
@@ -36,24 +87,16 @@ std::vector<Eigen::Vector3f> normals_of(const World& world) {
 RayCaster::RayCaster(const World& world)
     : embree_(std::make_unique<Embree>()),
       material_of_(world.material_of),
+      first_disc_(static_cast<std::uint32_t>(world.triangles.size())),
       normals_(normals_of(world)) {
+  for (const Disc& disc : world.discs) material_of_.push_back(disc.material);
   // One thread builds the tree, so that it is the same tree every time.
   embree_->device = rtcNewDevice("threads=1");
   embree_->scene = rtcNewScene(embree_->device);
   // Robust: no ray slips through between two triangles that share an edge.
   rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry mesh = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                               world.vertices.size()));
-  for (const auto& v : world.vertices) vertices = std::copy_n(v.data(), 3, vertices);
-  auto* corners = static_cast<std::uint32_t*>(
-      rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                              3 * sizeof(std::uint32_t), world.triangles.size()));
-  for (const auto& t : world.triangles) corners = std::copy_n(t.data(), 3, corners);
-  rtcCommitGeometry(mesh);
-  rtcAttachGeometry(embree_->scene, mesh);
-  rtcReleaseGeometry(mesh);
+  if (!world.triangles.empty()) attach_triangles(embree_->device, embree_->scene, world);
+  if (!world.discs.empty()) attach_discs(embree_->device, embree_->scene, world.discs);
   rtcCommitScene(embree_->scene);
 }
 
@@ -92,13 +135,14 @@ void RayCaster::cast(const RayPacket& rays, float min_range, float max_range,
     const float dot = nx * rays.dx[i] + ny * rays.dy[i] + nz * rays.dz[i];
     hits.range[i] = met ? packet.ray.tfar[i] : std::numeric_limits<float>::infinity();
     hits.cos_incidence[i] = met ? std::abs(dot) / std::sqrt(nx * nx + ny * ny + nz * nz) : 0;
-    hits.triangle[i] = met ? packet.hit.primID[i] : 0;
-    hits.material[i] = met ? material_of_[packet.hit.primID[i]] : std::uint16_t{0};
+    const std::uint32_t before = packet.hit.geomID[i] == kDiscs ? first_disc_ : 0;
+    hits.triangle[i] = met ? before + packet.hit.primID[i] : 0;
+    hits.material[i] = met ? material_of_[hits.triangle[i]] : std::uint16_t{0};
   }
 }
 
-bool RayCaster::is_visible(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
-  constexpr float kSlack = 0.002F;
+bool RayCaster::is_visible(const Eigen::Vector3f& from, const Eigen::Vector3f& to,
+                           float slack) const {
   const Eigen::Vector3f way = to - from;
   const float length = way.norm();
   RTCRay ray{};
@@ -108,7 +152,7 @@ bool RayCaster::is_visible(const Eigen::Vector3f& from, const Eigen::Vector3f& t
   ray.dir_x = way.x() / length;
   ray.dir_y = way.y() / length;
   ray.dir_z = way.z() / length;
-  ray.tfar = length - kSlack;
+  ray.tfar = length - slack;
   ray.mask = ~0U;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

@@ -21,10 +21,15 @@ struct alignas(32) HitPacket {
   std::array<float, RayPacket::kSize> range;             ///< metres; infinite where nothing was met
   std::array<float, RayPacket::kSize> cos_incidence;     ///< 0 (grazing) to 1 (square)
   std::array<std::uint16_t, RayPacket::kSize> material;  ///< index into World::materials
-  std::array<std::uint32_t, RayPacket::kSize> triangle;  ///< of the world; 0 where nothing was met
+  /// Index into World::triangles; discs count on from the last triangle; 0 where nothing was met.
+  std::array<std::uint32_t, RayPacket::kSize> triangle;
 };
 
-/// Casts rays into a world's triangles. Thread-safe once made; same bits for the same rays.
+/// Normal of what a ray met (HitPacket::triangle), unit length: of a triangle on its front.
+Eigen::Vector3d normal_of(const World& world, std::size_t surface);
+
+/// Casts rays into a world's triangles and discs. Thread-safe once made; same bits for the same
+/// rays.
 class RayCaster {
  public:
   explicit RayCaster(const World& world);
@@ -35,17 +40,20 @@ class RayCaster {
   /// First hits between `min_range` and `max_range` metres.
   void cast(const RayPacket& rays, float min_range, float max_range, HitPacket& hits) const;
 
-  /// Of a triangle of the world, on its front, unit length (zero for one without an area).
-  const Eigen::Vector3f& normal(std::uint32_t triangle) const { return normals_[triangle]; }
+  /// Of a triangle or disc of the world (numbered as in HitPacket), on its front, unit length (zero
+  /// for one without an area).
+  const Eigen::Vector3f& normal(std::uint32_t surface) const { return normals_[surface]; }
 
-  /// True when nothing stands between `from` and `to` (but for the last 2 mm).
-  bool is_visible(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
+  /// True when nothing stands between `from` and `to` (but for the last `slack` metres).
+  bool is_visible(const Eigen::Vector3f& from, const Eigen::Vector3f& to,
+                  float slack = 0.002F) const;
 
  private:
   struct Embree;
   std::unique_ptr<Embree> embree_;
-  std::vector<std::uint16_t> material_of_;
-  std::vector<Eigen::Vector3f> normals_;
+  std::vector<std::uint16_t> material_of_;  ///< of triangles, then of discs
+  std::uint32_t first_disc_;
+  std::vector<Eigen::Vector3f> normals_;  ///< likewise
 };
 
 }  // namespace holdfast::simulation

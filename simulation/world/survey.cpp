@@ -22,6 +22,10 @@ constexpr std::int64_t kBlock = 32;     // squares along a side of what shares o
 constexpr std::size_t kNearStations = 16;
 constexpr std::size_t kFarStride = 4;  // of the stations further away only one in so many is tried
 constexpr std::size_t kChunkTriangles = 16;
+constexpr float kDiscBlock = 4;  // metres along a side of what shares one list of stations
+constexpr std::size_t kNearDiscStations = 8;
+constexpr std::size_t kFarDiscStations = 24;  // at most, spread over those further away
+constexpr std::size_t kChunkBlocks = 16;
 
 /// Where the LiDAR stands along the route.
 std::vector<Vector3d> stations_along(const Route& route, double height) {
@@ -159,6 +163,97 @@ class Surveyor {
   std::vector<std::size_t> chosen_;
 };
 
+/// Discs that stand near each other, in an order of their own.
+using DiscBlock = std::vector<std::uint32_t>;
+
+std::vector<DiscBlock> blocks_of(const std::vector<Disc>& discs) {
+  std::vector<std::pair<std::array<std::int32_t, 3>, std::uint32_t>> order;
+  for (std::uint32_t i = 0; i < discs.size(); ++i) {
+    const Eigen::Array3f cube = (discs[i].center.array() / kDiscBlock).floor();
+    order.push_back({{static_cast<std::int32_t>(cube[0]), static_cast<std::int32_t>(cube[1]),
+                      static_cast<std::int32_t>(cube[2])},
+                     i});
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<DiscBlock> blocks;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (k == 0 || order[k].first != order[k - 1].first) blocks.emplace_back();
+    blocks.back().push_back(order[k].second);
+  }
+  return blocks;
+}
+
+/// Surveys blocks of discs.
+class DiscSurveyor {
+ public:
+  DiscSurveyor(const World& world, const RayCaster& caster, const std::vector<Vector3d>& stations,
+               const SurveyModel& model)
+      : world_(world), caster_(caster), stations_(stations), model_(model) {}
+
+  void add(const DiscBlock& block, RandomStream& noise, RandomStream& keep,
+           std::vector<Vector3f>& points) const {
+    const std::vector<Vector3f> chosen = stations_near(world_.discs[block.front()].center);
+    if (chosen.empty()) return;
+    for (const std::uint32_t i : block) {
+      const Disc& disc = world_.discs[i];
+      const double share = world_.materials[disc.material].survey_return;
+      if (share < 1 && keep.uniform() >= share) continue;
+      if (!is_seen(disc, chosen)) continue;
+      const double x = noise.normal();
+      const double y = noise.normal();
+      const Vector3d error = model_.sigma_m * Vector3d(x, y, noise.normal());
+      points.push_back((disc.center.cast<double>() + error).cast<float>());
+    }
+  }
+
+ private:
+  /// The nearest first, then some of those further away.
+  std::vector<Vector3f> stations_near(const Vector3f& place) const {
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t k = 0; k < stations_.size(); ++k) {
+      const double distance = (stations_[k] - place.cast<double>()).norm();
+      if (distance <= model_.range_m) order.emplace_back(distance, k);
+    }
+    std::sort(order.begin(), order.end());
+    const std::size_t far = order.size() - std::min(order.size(), kNearDiscStations);
+    const std::size_t stride = std::max<std::size_t>(1, chunk_count(far, kFarDiscStations));
+    std::vector<Vector3f> chosen;
+    for (std::size_t k = 0; k < order.size(); k += k < kNearDiscStations ? 1 : stride) {
+      chosen.push_back(stations_[order[k].second].cast<float>());
+    }
+    return chosen;
+  }
+
+  /// What neighbours that overlap the disc hide of its centre does not count.
+  bool is_seen(const Disc& disc, const std::vector<Vector3f>& chosen) const {
+    const float slack = 2 * disc.radius + 0.002F;
+    return std::any_of(chosen.begin(), chosen.end(), [&](const Vector3f& station) {
+      const Vector3f way = station - disc.center;
+      return std::abs(disc.normal.dot(way)) >= model_.least_cosine * way.norm() &&
+             caster_.is_visible(station, disc.center, slack);
+    });
+  }
+
+  const World& world_;
+  const RayCaster& caster_;
+  const std::vector<Vector3d>& stations_;
+  const SurveyModel& model_;
+};
+
+void survey_discs(const DiscSurveyor& surveyor, const std::vector<DiscBlock>& blocks,
+                  std::uint64_t seed, WorkerPool& pool, io::PointCloud& cloud) {
+  std::vector<std::vector<Vector3f>> parts(chunk_count(blocks.size(), kChunkBlocks));
+  const auto work = [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    RandomStream noise(seed, "survey.disc_noise." + std::to_string(chunk));
+    RandomStream keep(seed, "survey.disc_keep." + std::to_string(chunk));
+    for (std::size_t i = begin; i < end; ++i) surveyor.add(blocks[i], noise, keep, parts[chunk]);
+  };
+  for_each_chunk(pool, blocks.size(), kChunkBlocks, work);
+  for (const auto& part : parts) {
+    cloud.points.insert(cloud.points.end(), part.begin(), part.end());
+  }
+}
+
 }  // namespace
 
 io::PointCloud survey(const World& world, const RayCaster& caster, const Route& route,
@@ -180,6 +275,7 @@ io::PointCloud survey(const World& world, const RayCaster& caster, const Route& 
   for (const auto& part : parts) {
     cloud.points.insert(cloud.points.end(), part.begin(), part.end());
   }
+  survey_discs({world, caster, stations, model}, blocks_of(world.discs), seed, pool, cloud);
   return cloud;
 }
 

@@ -19,7 +19,8 @@ struct SurveyModel {
 };
 
 /// Points on the fronts of the world's triangles that can be seen from the route, less what the
-/// materials keep from a surveyor. Same seed, same cloud, for any number of threads.
+/// materials keep from a surveyor, and the centres of its discs that can be seen from either side:
+/// a cloud is known at its points only. Same seed, same cloud, for any number of threads.
 io::PointCloud survey(const World& world, const RayCaster& caster, const Route& route,
                       const SurveyModel& model, std::uint64_t seed, WorkerPool& pool);
 

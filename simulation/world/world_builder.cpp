@@ -44,6 +44,12 @@ void WorldBuilder::triangle(const Vector3d& a, const Vector3d& b, const Vector3d
   world_.object_of.push_back(object_);
 }
 
+void WorldBuilder::disc(const Disc& disc, const Material& material) {
+  world_.discs.push_back(disc);
+  world_.discs.back().center = (disc.center.cast<double>() + offset_).cast<float>();
+  world_.discs.back().material = material_index(material);
+}
+
 void WorldBuilder::object(WorldObject object, const std::function<void()>& parts) {
   const bool outermost = object_ == 0;
   if (outermost) {

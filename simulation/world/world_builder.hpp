@@ -51,6 +51,8 @@ class WorldBuilder {
             const Eigen::Vector3d& d, const Material& material);
   void triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                 const Material& material);
+  /// A disc; its material index is set here.
+  void disc(const Disc& disc, const Material& material);
   /// Floor or ground over a rectangle, seen from above.
   void floor(const Eigen::Vector2d& min, const Eigen::Vector2d& max, double z,
              const Material& material);
