@@ -102,7 +102,7 @@ void Footprint::look_into(Echo& echo, const Beams& beams, std::size_t i, const R
   const RayPacket packet = rays_of(beams, i, random);
   HitPacket hits;
   caster.cast(packet, min_range_m_, max_range_m_, hits);
-  const Vector3f normal = caster.normal(beams.triangle[i]);
+  const Vector3f& normal = caster.normal(beams.triangle[i]);
   const float height = echo.range * normal.dot(beams.direction[i]);
   std::vector<Ray> rays;
   bool one_surface = echo.is_there();

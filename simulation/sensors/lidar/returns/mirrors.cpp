@@ -77,7 +77,7 @@ RayPacket Mirrors::packet_of(const Beams& beams, const std::vector<Thrown>& thro
   for (std::size_t lane = 0; lane < RayPacket::kSize; ++lane) {
     const std::size_t i = thrown[std::min(first + lane, thrown.size() - 1)].beam;
     const Vector3f& d = beams.direction[i];
-    const Vector3f normal = caster.normal(beams.triangle[i]);
+    const Vector3f& normal = caster.normal(beams.triangle[i]);
     const Vector3f way = d - 2 * normal.dot(d) * normal;
     set_ray(rays, lane, beams.origin[i] + beams.echoes[i].range * d + kOff * way, way);
   }
