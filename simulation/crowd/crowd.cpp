@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr std::size_t kInner = 12;
-constexpr std::size_t kOuter = 16;
+constexpr std::size_t kOuter = 20;
 constexpr double kRounds = 0.12;  // rad/s at which a ring walks round the robot
 
 constexpr std::size_t kSplineMargin = 3;
@@ -69,7 +69,8 @@ class Gathering {
     scene.robot = state.T_map_body.translation;
     scene.robot_velocity = direction * state.v_map.head<2>();
     for (std::size_t i = 0; i < others_.size(); ++i) {
-      scene.others.emplace_back(others_.at(i, t).T_map_body.translation.head<2>());
+      if (others_.is_there(i, t))
+        scene.others.emplace_back(others_.at(i, t).T_map_body.translation.head<2>());
     }
     return scene;
   }
@@ -88,7 +89,7 @@ class Gathering {
                                : (static_cast<double>(i - kInner) + 0.5) / kOuter;
       CrowdMember member;
       member.angle = turned + kTwoPi * share + random.uniform(-0.1, 0.1);
-      member.distance = inner ? random.uniform(1.05, 1.35) : random.uniform(1.8, 2.8);
+      member.distance = inner ? random.uniform(1.0, 1.3) : random.uniform(1.6, 2.8);
       const Vector3d foot(robot.x(), robot.y(), *ground);
       if (place(foot, member)) members.push_back(member);
     }

@@ -10,7 +10,7 @@
 
 namespace holdfast::simulation {
 
-/// Up to 28 people who during `span` walk round the robot and with it, in a ring of about 1.2 m and
+/// Up to 32 people who during `span` walk round the robot and with it, in a ring of about 1.2 m and
 /// one of 2.2 m, where the world leaves them room. Before and after it they keep away from the
 /// robot; they are there from when until when nobody could see them: as something hid them or they
 /// were more than 25 m away. Where a room has no such place they come and go through a wall at

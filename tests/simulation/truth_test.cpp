@@ -185,11 +185,11 @@ std::vector<std::string> all_scenarios() {
 INSTANTIATE_TEST_SUITE_P(Truth, EveryScenario, ::testing::ValuesIn(all_scenarios()),
                          [](const auto& instance) { return instance.param; });
 
-/// Greatest |d^4/dt^4| of the rates that a gesture of 0.4 rad in 0.3 s adds, and where its third
-/// derivative sets in at once, smoothed over a knot: 720 A / T^5 + 60 A / T^3 / knot^2. Being
-/// carried turns slower.
+/// Greatest |d^4/dt^4| of the rates that a gesture of 0.28 rad adds (at 3 rad/s, in 0.17 s), and
+/// where its third derivative sets in at once, smoothed over a knot: 720 A / T^5 + 60 A / T^3 /
+/// knot^2. Being carried turns slower.
 const double kGestureFourth =
-    720 * 0.4 / std::pow(0.3, 5) + 60 * 0.4 / std::pow(0.3, 3) / (0.05 * 0.05);
+    720 * 0.28 / std::pow(0.17, 5) + 60 * 0.28 / std::pow(0.17, 3) / (0.05 * 0.05);
 
 TEST(Truth, IntegratesFromTheImuThroughCarryingAndInTheHand) {
   for (const char* scenario : {"corridor", "garage", "offices"}) {
