@@ -21,6 +21,7 @@ constexpr std::size_t kInner = 12;
 constexpr std::size_t kOuter = 20;
 constexpr double kRounds = 0.12;  // rad/s at which a ring walks round the robot
 
+constexpr TimeNs kComing = 5 * kSecond / 2;
 constexpr std::size_t kSplineMargin = 3;
 constexpr std::size_t kPad = kMeanReach + kSplineMargin;
 constexpr std::size_t kMostLeaving = 1200;  // ticks
@@ -210,10 +211,15 @@ class Gathering {
 
 }  // namespace
 
+TimeSpan densest(const TimeSpan& crowd) {
+  const TimeNs coming = std::min((crowd.end - crowd.begin) / 4, kComing);
+  return {crowd.begin + coming, crowd.end - coming};
+}
+
 std::vector<Passer> gather_crowd(const TimeSpan& span, const Drive& robot, const Vector3d& eye,
                                  const Walkers& others, const RayCaster& world,
                                  std::uint64_t seed) {
-  return Gathering(span, robot, eye, others, world, seed).plan();
+  return Gathering(densest(span), robot, eye, others, world, seed).plan();
 }
 
 }  // namespace holdfast::simulation

@@ -159,7 +159,8 @@ bool DrivePlanner::is_far(const Leg& from, const Leg& to) const {
   const Route::Place a = courses_[from.course].route.at(from.s + to.gone - from.gone);
   const Route::Place b = courses_[to.course].route.at(to.s);
   return (a.position - b.position).norm() >= kFarMetres ||
-         std::abs(std::remainder(a.heading - b.heading, kTwoPi)) >= kFarRadians;
+         std::abs(std::remainder(a.heading - b.heading, kTwoPi)) >=
+             kFarRadians + style_.gesture_rad;
 }
 
 double DrivePlanner::course_difference(const Leg& from, const Leg& to, double gone) const {
