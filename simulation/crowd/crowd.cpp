@@ -18,9 +18,10 @@ using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr std::size_t kInner = 12;
-constexpr std::size_t kOuter = 16;
+constexpr std::size_t kOuter = 20;
 constexpr double kRounds = 0.12;  // rad/s at which a ring walks round the robot
 
+constexpr TimeNs kComing = 5 * kSecond / 2;
 constexpr std::size_t kSplineMargin = 3;
 constexpr std::size_t kPad = kMeanReach + kSplineMargin;
 constexpr std::size_t kMostLeaving = 1200;  // ticks
@@ -69,7 +70,8 @@ class Gathering {
     scene.robot = state.T_map_body.translation;
     scene.robot_velocity = direction * state.v_map.head<2>();
     for (std::size_t i = 0; i < others_.size(); ++i) {
-      scene.others.emplace_back(others_.at(i, t).T_map_body.translation.head<2>());
+      if (others_.is_there(i, t))
+        scene.others.emplace_back(others_.at(i, t).T_map_body.translation.head<2>());
     }
     return scene;
   }
@@ -88,7 +90,7 @@ class Gathering {
                                : (static_cast<double>(i - kInner) + 0.5) / kOuter;
       CrowdMember member;
       member.angle = turned + kTwoPi * share + random.uniform(-0.1, 0.1);
-      member.distance = inner ? random.uniform(1.05, 1.35) : random.uniform(1.8, 2.8);
+      member.distance = inner ? random.uniform(1.0, 1.3) : random.uniform(1.6, 2.8);
       const Vector3d foot(robot.x(), robot.y(), *ground);
       if (place(foot, member)) members.push_back(member);
     }
@@ -209,10 +211,15 @@ class Gathering {
 
 }  // namespace
 
+TimeSpan densest(const TimeSpan& crowd) {
+  const TimeNs coming = std::min((crowd.end - crowd.begin) / 4, kComing);
+  return {crowd.begin + coming, crowd.end - coming};
+}
+
 std::vector<Passer> gather_crowd(const TimeSpan& span, const Drive& robot, const Vector3d& eye,
                                  const Walkers& others, const RayCaster& world,
                                  std::uint64_t seed) {
-  return Gathering(span, robot, eye, others, world, seed).plan();
+  return Gathering(densest(span), robot, eye, others, world, seed).plan();
 }
 
 }  // namespace holdfast::simulation

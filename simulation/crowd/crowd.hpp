@@ -10,13 +10,17 @@
 
 namespace holdfast::simulation {
 
-/// Up to 28 people who during `span` walk round the robot and with it, in a ring of about 1.2 m and
-/// one of 2.2 m, where the world leaves them room. Before and after it they keep away from the
-/// robot; they are there from when until when nobody could see them: as something hid them or they
-/// were more than 25 m away. Where a room has no such place they come and go through a wall at
-/// least 3 m from the robot, as if it had a door. They keep clear of the robot, of each other, of
-/// `others` and of walls; whoever cannot stay 0.5 m from the robot's axis does not come. `eye` is
-/// where the LiDAR sits in the body's frame; `world` is the static world.
+/// When a crowd of that span is complete: a quarter of it, but 2.5 s at most, goes by for coming
+/// and as much for going.
+TimeSpan densest(const TimeSpan& crowd);
+
+/// Up to 32 people who, when the crowd of `span` is densest, walk round the robot and with it, in a
+/// ring of about 1.2 m and one of 2.2 m, where the world leaves them room. Before and after it they
+/// keep away from the robot; they are there from when until when nobody could see them: as
+/// something hid them or they were more than 25 m away. Where a room has no such place they come
+/// and go through a wall at least 3 m from the robot, as if it had a door. They keep clear of the
+/// robot, of each other, of `others` and of walls; whoever cannot stay 0.5 m from the robot's axis
+/// does not come. `eye` is where the LiDAR sits in the body's frame; `world` is the static world.
 std::vector<Passer> gather_crowd(const TimeSpan& span, const Drive& robot,
                                  const Eigen::Vector3d& eye, const Walkers& others,
                                  const RayCaster& world, std::uint64_t seed);

@@ -18,12 +18,16 @@ std::string event_reference() {
          "when the LiDAR is uncovered; the IMU feels all of it. The error of a duration that is "
          "too "
          "short says what is needed (about 4 s at 1.2 m/s) |\n"
-         "| `crowd` | 10 s | up to 28 people walk with the robot and round it in rings of about "
+         "| `crowd` | 10 s | up to 32 people walk with the robot and round it in rings of about "
          "1.2 "
-         "and 2.3 m, as far as there is room, and hide 50 to 80 % of the returns from within 15 m; "
-         "the robot goes at 1.2 m/s at most. They come and go where something hides them from the "
-         "LiDAR or more than 25 m away, or, in rooms without such a place, through a wall 3 m from "
-         "the robot or further, as if it had a door |\n\n";
+         "and 2.2 m, as far as there is room, and hide 60 to 70 % of what lies within 15 m when "
+         "they "
+         "are densest; the robot goes at 1.2 m/s at most. They come within the first "
+         "quarter of it (2.5 s at most) and go in the last; before and after they keep away. "
+         "They come and go where something hides them from the LiDAR or more than 25 m away, or, "
+         "in "
+         "rooms without such a place, through a wall 3 m from the robot or further, as if it had a "
+         "door |\n\n";
 }
 
 }  // namespace holdfast::simulation

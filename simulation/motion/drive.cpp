@@ -27,6 +27,7 @@ DriveStyle DriveStyle::in_hand() const {
   style.step_heave_m = 0.02;
   style.step_sway_m = 0.02;
   style.gesture_rad = 0.8;
+  style.gesture_rad_s = 3;
   return style;
 }
 

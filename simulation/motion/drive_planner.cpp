@@ -6,23 +6,12 @@
 #include <limits>
 #include <numbers>
 
-#include "simulation/motion/smoothing.hpp"
+#include "simulation/motion/drive_ticks.hpp"
 
 namespace holdfast::simulation {
 namespace {
 
-constexpr double kTwoPi = 2 * std::numbers::pi;
-constexpr TimeNs kKnot = kSecond / 20;
-constexpr double kKnotSeconds = 0.05;
-
-// Smoothing and spline spread each tick to both sides; the robot therefore sets off this much after
-// its rest ends.
-constexpr std::size_t kSplineReach = 3;
-constexpr TimeNs kReach = TimeNs{kMeanReach + kSplineReach} * kKnot;
-
-// A leg's controls begin before its start and end after its end by these many ticks, so that two
-// legs can be joined; the first tick of all lies kLead ticks before the log.
-constexpr std::size_t kLead = 20;
+// A leg's controls end after its end by these many ticks, so that two legs can be joined.
 constexpr std::size_t kTail = 48;
 
 // After a kidnap the body moves on as if nothing had happened for kBlendBegin and has come back to
@@ -36,28 +25,10 @@ constexpr double kFarRadians = 60.0 / 180.0 * std::numbers::pi;
 
 constexpr double kSharp = 40.0 / 180.0 * std::numbers::pi;  // corners for turning on the spot
 
-constexpr double kCrowdPace = 1.2;   // m/s
-constexpr double kCarryReach = 2.5;  // metres at most for each second of a carry
-constexpr double kHeldBrake = 2.0;   // m/s^2 when somebody stops the robot to carry it away
-
-// To be told how long a carry must last one tries longer and longer ones.
-constexpr std::size_t kCarryStep = 5;  // ticks
-constexpr std::size_t kCarryMost = 1200;
+constexpr double kCrowdPace = 1.2;  // m/s
+constexpr double kHeldBrake = 2.0;  // m/s^2 when somebody stops the robot to carry it away
 
 constexpr double kWobbleSpeed = 0.3;  // m/s from which on the wobble is full
-
-TimeNs tick_time(std::size_t tick) { return (static_cast<TimeNs>(tick) - TimeNs{kLead}) * kKnot; }
-std::size_t tick_at(TimeNs t) { return static_cast<std::size_t>(t / kKnot) + kLead; }
-
-/// `s`, or the next place far enough from the lifts of a route to begin a drive there.
-double off_lifts(const Route& route, double s) {
-  constexpr double kAway = 8.0;  // metres, and seconds or more: a cabin can come in time
-  for (const Route::Lift& lift : route.lifts()) {
-    const double past = std::remainder(s - lift.s, route.length());
-    if (std::abs(past) < kAway) s += kAway - past;
-  }
-  return s;
-}
 
 /// `pose` moved by the yaw-only transform that takes pose `a` to the place of pose `b`.
 PoseVector moved(const PoseVector& pose, const PoseVector& a, const PoseVector& b) {
@@ -128,7 +99,7 @@ void DrivePlanner::drive(std::optional<TimeNs> duration, const std::vector<TimeN
       ++carry;
       picked_up = false;
     }
-    const bool held = carry != carries.end() && carry->begin <= t;
+    const bool held = carry != carries.end() && carry->begin <= t && (!end || carry->begin < *end);
     if (held && !picked_up && !rides_.is_riding()) picked_up = pick_up(*carry, tick);
     const double target = held ? 0 : target_speed(t, gone, !duration);
     const double step = style_.acceleration_m_s2 * kKnotSeconds;
@@ -201,7 +172,8 @@ bool DrivePlanner::is_far(const Leg& from, const Leg& to) const {
   const Route::Place a = courses_[from.course].route.at(from.s + to.gone - from.gone);
   const Route::Place b = courses_[to.course].route.at(to.s);
   return (a.position - b.position).norm() >= kFarMetres ||
-         std::abs(std::remainder(a.heading - b.heading, kTwoPi)) >= kFarRadians;
+         std::abs(std::remainder(a.heading - b.heading, kTwoPi)) >=
+             kFarRadians + style_.gesture_rad;
 }
 
 double DrivePlanner::course_difference(const Leg& from, const Leg& to, double gone) const {
@@ -212,67 +184,6 @@ double DrivePlanner::course_difference(const Leg& from, const Leg& to, double go
     worst = std::max(worst, std::abs(a.curvature - b.curvature) + std::abs(a.slope - b.slope));
   }
   return worst;
-}
-
-/// Carries the robot from where it stands at `tick`, once it stands; false if it does not yet.
-bool DrivePlanner::pick_up(const TimeSpan& carry, std::size_t tick) {
-  constexpr std::size_t kStill = kMeanReach + kSplineReach;
-  const double gone = gone_[tick];
-  if (gone_[tick - kStill] != gone) return false;
-  const double gone_before = gone_[tick_at(carry.begin)];
-  const std::size_t last = tick_at(carry.end);
-  const std::size_t begin = tick + kSplineReach;
-  const std::size_t ticks = last > begin + kSplineReach ? last - begin - kSplineReach : 0;
-  std::size_t needed = ticks;
-  auto candidates = carry_candidates(begin, needed, gone_before);
-  const bool in_time = !candidates.empty();
-  while (candidates.empty() && needed < kCarryMost) {
-    needed += kCarryStep;
-    candidates = carry_candidates(begin, needed, gone_before);
-  }
-  const auto reach = static_cast<TimeNs>(needed + kSplineReach + 1);
-  needed_for_carries_.push_back(in_time ? 0 : tick_time(begin) + reach * kKnot - carry.begin);
-  if (!in_time) return true;
-  legs_.push_back(candidates[kidnap_random_.below(candidates.size())]);
-  legs_.back().lifted = rides_.height(tick_time(tick));
-  return true;
-}
-
-/// Legs that begin far enough away, from where the robot rests and from where it was when it had
-/// gone `gone_before`, and to which a person can carry it in so many ticks from `begin` on.
-std::vector<DrivePlanner::Leg> DrivePlanner::carry_candidates(std::size_t begin, std::size_t ticks,
-                                                              double gone_before) const {
-  std::vector<Leg> out;
-  if (ticks == 0) return out;
-  constexpr double kStep = 0.25;
-  const Leg& from = legs_.back();
-  const double gone = gone_.back();
-  const double s = from.s + gone - from.gone;
-  const Leg before{from.start, from.course, from.s + gone_before - from.gone, gone};
-  const Leg here{from.start, from.course, s, gone};
-  const int most =
-      static_cast<int>(kCarryReach * static_cast<double>(ticks) * kKnotSeconds / kStep);
-  for (int i = -most; i <= most; ++i) {
-    const double way = i * kStep;
-    const Route& route = courses_[from.course].route;
-    if (off_lifts(route, s + way) != s + way) continue;
-    const double turned_s = route.reversed_s(s + way);
-    const TimeNs start = tick_time(begin - kSplineReach);
-    for (const Leg& to : {Leg{start, from.course, s + way, gone, begin + ticks, way},
-                          Leg{start, 1 - from.course, turned_s, gone, begin + ticks, way}}) {
-      if (!is_far(here, to) || !is_far(before, to)) continue;
-      const CarryPath path = carry_path(here, to);
-      if (is_humanly_possible(carried(path, ticks, kKnot), kKnot)) out.push_back(to);
-    }
-  }
-  return out;
-}
-
-CarryPath DrivePlanner::carry_path(const Leg& from, const Leg& to) const {
-  CarryPath path{courses_[from.course].route, from.s + to.gone - from.gone, to.carried_m,
-                 pose(from, to.gone), pose(to, to.gone)};
-  path.to[3] = path.from[3] + std::remainder(path.to[3] - path.from[3], kTwoPi);
-  return path;
 }
 
 /// Where the robot is on a leg when it has gone so far since the start of the log, weaving
@@ -337,20 +248,6 @@ void DrivePlanner::join(std::size_t leg, const Controls& before, Controls& after
     const double weight = smooth_step((since - kBlendBegin) / (kBlendEnd - kBlendBegin));
     const PoseVector& felt = before[tick - first_tick(leg - 1)];
     after[i] = weight * after[i] + (1 - weight) * moved(felt, from, to);
-  }
-}
-
-/// Makes leg `leg` begin where the leg before it rests: carried to the place where it goes on.
-void DrivePlanner::carry(std::size_t leg, Controls& after) const {
-  const Leg& to = legs_[leg];
-  const CarryPath path = carry_path(legs_[leg - 1], to);
-  const std::size_t begin = tick_at(to.start) + kSplineReach;
-  const Controls way = carried(path, to.put_down - begin, kKnot);
-  const double turn = path.to[3] - pose(to, to.gone)[3];
-  for (std::size_t i = 0; i < after.size(); ++i) {
-    const std::size_t tick = first_tick(leg) + i;
-    after[i][3] += turn;
-    if (tick < to.put_down) after[i] = way[tick > begin ? tick - begin : 0];
   }
 }
 

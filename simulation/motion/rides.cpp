@@ -8,6 +8,7 @@ namespace holdfast::simulation {
 namespace {
 
 constexpr double kStopSlack = 0.02;  // metres from the place of the ride at which the robot rests
+constexpr double kAway = 8.0;        // metres, and seconds or more: a cabin can come in time
 
 }  // namespace
 
@@ -31,6 +32,14 @@ double ride_arrival(double rise_m) {
 }
 
 double ride_end(double rise_m) { return ride_arrival(rise_m) + kRideWait; }
+
+double off_lifts(const Route& route, double s) {
+  for (const Route::Lift& lift : route.lifts()) {
+    const double past = std::remainder(s - lift.s, route.length());
+    if (std::abs(past) < kAway) s += kAway - past;
+  }
+  return s;
+}
 
 /// Where the next ride is on the route, which goes round; infinite without one.
 double RideControl::next_ride(const Route& route, double s) const {

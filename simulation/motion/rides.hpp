@@ -28,6 +28,9 @@ double ride_height(double rise_m, double seconds);
 double ride_arrival(double rise_m);
 double ride_end(double rise_m);
 
+/// `s`, or the next place of a route that is far enough from its lifts for a drive to begin there.
+double off_lifts(const Route& route, double s);
+
 /// Takes a robot that drives along routes up and down where they say so. Asked and told tick by
 /// tick, by the planner of a drive.
 class RideControl {

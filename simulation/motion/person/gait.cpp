@@ -42,7 +42,7 @@ void Gait::add(double t, double moving, PoseVector& control) const {
 /// There and back within kEvery, at rest in between; nods and tilts go half as far as turns.
 double Gait::gesture(std::uint64_t index, double since) const {
   RandomStream random(seed_, "drive.gesture." + std::to_string(index));
-  const double size = (index % kAxes == 0 ? 1 : 0.5) * gesture_rad_ * random.uniform(0.5, 1);
+  const double size = (index % kAxes == 0 ? 1 : 0.5) * gesture_rad_ * random.uniform(0.7, 1);
   const double rate = gesture_rad_s_ * random.uniform(0.5, 1);
   const double turning_s = std::min(kSmoothStepSteepest * size / rate, 0.4 * kEvery);
   const double held_s = random.uniform(0, 0.5) * (kEvery - 2 * turning_s);
