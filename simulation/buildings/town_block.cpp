@@ -128,9 +128,9 @@ class BlockBuilder {
     const double yaw = std::atan2(side.along.y(), side.along.x());
     for (double s = kCorner; s + kCorner < side.length; s += random_.uniform(5.6, 7.5)) {
       const double share = random_.uniform();
-      const Placement place{side.at(s, out + random_.uniform(-0.12, 0.12)),
-                            yaw + random_.uniform(-0.04, 0.04) +
-                                (random_.below(2) == 0 ? 0 : std::numbers::pi)};
+      const Placement place{
+          side.at(s, out + random_.uniform(-0.12, 0.12)),
+          yaw + random_.uniform(-0.04, 0.04) + (random_.below(2) == 0 ? 0 : std::numbers::pi)};
       if (share < 0.4) add_car(build_, place);
       if (share > 0.97) build_.spare([&] { add_car(build_, place); });
       if (share > 0.4 && share < 0.44) {

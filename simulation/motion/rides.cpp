@@ -14,7 +14,7 @@ constexpr double kStopSlack = 0.02;  // metres from the place of the ride at whi
 double ride_height(double rise_m, double seconds) {
   const double way = std::abs(rise_m);
   const double speed = std::min(kRideSpeed, std::sqrt(way * kRideAcceleration));
-  const double gain = speed / kRideAcceleration;          // seconds of speeding up
+  const double gain = speed / kRideAcceleration;             // seconds of speeding up
   const double steady = speed > 0 ? way / speed - gain : 0;  // seconds at full speed
   const double t = std::clamp(seconds - kRideWait, 0.0, 2 * gain + steady);
   const double left = 2 * gain + steady - t;

@@ -9,18 +9,19 @@ namespace holdfast::simulation {
 
 /// One ride of a robot in a lift.
 struct Ride {
-  TimeNs begin = 0;           ///< when the robot has come to rest; from the start of the log
-  Eigen::Vector3d position;   ///< of the route before the ride
-  double heading = 0;         ///< of the robot, rad
-  double rise_m = 0;          ///< upwards; below 0 down
+  TimeNs begin = 0;          ///< when the robot has come to rest; from the start of the log
+  Eigen::Vector3d position;  ///< of the route before the ride
+  double heading = 0;        ///< of the robot, rad
+  double rise_m = 0;         ///< upwards; below 0 down
 };
 
 inline constexpr double kRideSpeed = 1.0;         ///< m/s
 inline constexpr double kRideAcceleration = 0.6;  ///< m/s^2
 inline constexpr double kRideWait = 4.0;          ///< s at rest before and after
 
-/// How far a lift has gone `seconds` after the robot came to rest in it, towards `rise_m`: it waits,
-/// sets off with the acceleration, goes at the speed if the way is long enough, stops likewise.
+/// How far a lift has gone `seconds` after the robot came to rest in it, to `rise_m`: it waits,
+/// then sets off with the acceleration, goes at the speed if the way is long enough, stops
+/// likewise.
 double ride_height(double rise_m, double seconds);
 
 /// Seconds from coming to rest until the lift has arrived, and until the robot drives on.
@@ -49,7 +50,7 @@ class RideControl {
 
   std::vector<Ride> rides_;
   bool riding_ = false;
-  double before_ = 0;      ///< height before the ride that goes on
+  double before_ = 0;         ///< height before the ride that goes on
   double done_until_ = -1e9;  ///< no ride at or before this place of the route is to come
 };
 

@@ -44,7 +44,9 @@ class LiftRun {
     movers.push_back({path([&](double t) { return place(0, 0, height(t)); }), cabin_boxes()});
     for (const double end : {-1.0, 1.0}) {
       const double x = end * 0.5 * (plan_.length + kThick);
-      const auto cabin_door = [&](double t) { return place(x, slide(openness(t, end)), height(t)); };
+      const auto cabin_door = [&](double t) {
+        return place(x, slide(openness(t, end)), height(t));
+      };
       movers.push_back({path(cabin_door), door_boxes()});
       for (const double floor : plan_.floors) {
         const double landing = end * (0.5 * plan_.length + kLandingGap);
@@ -138,7 +140,8 @@ class LiftRun {
     const double lintel = h - plan_.door_height;
     for (const double end : {-1.0, 1.0}) {
       boxes.push_back({{end * 0.5 * (l - kThick), 0, h - 0.5 * lintel},
-                       {kThick, plan_.door_width, lintel}, metal});
+                       {kThick, plan_.door_width, lintel},
+                       metal});
     }
     return boxes;
   }

@@ -48,8 +48,9 @@ World build_blocks(const Grid& grid) {
   WorldBuilder build;
   for (int row = 0; row < grid.rows(); ++row) {
     for (int column = 0; column < grid.columns(); ++column) {
-      add_town_block(build, {column, row, {grid.x[column], grid.y[row]},
-                             {grid.x[column + 1], grid.y[row + 1]}});
+      add_town_block(
+          build,
+          {column, row, {grid.x[column], grid.y[row]}, {grid.x[column + 1], grid.y[row + 1]}});
     }
   }
   return build.build();
@@ -98,8 +99,8 @@ std::vector<VehiclePlan> traffic(const Grid& grid) {
       const double y0 = grid.y[row], y1 = grid.y[row + 1];
       const std::vector<Vector2d> round = {{x0, y0}, {x0, y1}, {x1, y1}, {x1, y0}};
       const VehicleKind kind = kAllVehicleKinds[random.below(5) % kAllVehicleKinds.size()];
-      plans.push_back({Route::closed(keep_right(round, kLaneMiddle), 6.0),
-                       random.uniform(5, 9), kind});
+      plans.push_back(
+          {Route::closed(keep_right(round, kLaneMiddle), 6.0), random.uniform(5, 9), kind});
     }
   }
   return plans;
@@ -129,8 +130,8 @@ Result<Scenario> make_town(std::string_view name) {
   const std::string_view size = name.substr(kPrefix.size());
   double km2 = 0;
   const auto read = std::from_chars(size.data(), size.data() + size.size(), km2);
-  const bool whole = read.ec == std::errc() &&
-                     std::string_view(read.ptr, size.data() + size.size()) == kUnit;
+  const bool whole =
+      read.ec == std::errc() && std::string_view(read.ptr, size.data() + size.size()) == kUnit;
   if (!whole || !(km2 >= kSmallestTown && km2 <= kLargestTown)) {
     return Error{fmt::format("scenario '{}': expected town:SIZEkm2 with a size of {} to {}", name,
                              kSmallestTown, kLargestTown)};

@@ -7,7 +7,7 @@
 
 namespace holdfast::simulation {
 
-inline constexpr double kTownKm2 = 0.1;       ///< of plain `town`
+inline constexpr double kTownKm2 = 0.1;        ///< of plain `town`
 inline constexpr double kSmallestTown = 0.03;  ///< km^2
 inline constexpr double kLargestTown = 10;
 

@@ -61,8 +61,8 @@ TEST(Town, IsNamedWithItsSize) {
   ASSERT_TRUE(town) << town.error().message;
   EXPECT_EQ(town->world.triangles.size(), make_town(0.05).world.triangles.size());
   EXPECT_FALSE(town->vehicles.empty());
-  for (const char* name : {"town:", "town:2", "town:km2", "town:0.01km2", "town:11km2",
-                           "town:1km2x", "town:nankm2"}) {
+  for (const char* name :
+       {"town:", "town:2", "town:km2", "town:0.01km2", "town:11km2", "town:1km2x", "town:nankm2"}) {
     const auto wrong = make_scenario(name);
     ASSERT_FALSE(wrong) << name;
     EXPECT_THAT(wrong.error().message, ::testing::HasSubstr("town:SIZEkm2")) << name;

@@ -115,8 +115,8 @@ TEST(Lift, ShowsTheLidarTheSameCabinAllTheWay) {
   options.lidar.period = kSecond;
   options.seed = 2;
   const auto simulation = make(options);
-  const Drive drive = Drive::plan(simulation->scenario().route, simulation->scenario().style, 2,
-                                  200 * kSecond, {});
+  const Drive drive =
+      Drive::plan(simulation->scenario().route, simulation->scenario().style, 2, 200 * kSecond, {});
   ASSERT_FALSE(drive.rides().empty());
   const Ride ride = drive.rides().front();
   const TimeNs start = simulation->start_time();
