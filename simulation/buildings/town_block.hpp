@@ -19,8 +19,8 @@ inline constexpr double kStripMiddle = 4.5;
 inline constexpr double kParkingMiddle = 6.6;
 inline constexpr double kHouseLine = 10;
 
-/// Builds the block, its pavements and its half of the streets; what it looks like depends on
-/// column and row only. Cars and crates are objects, a few of them spare.
+/// Builds the block, its pavements and its half of the streets; its looks depend on column and row
+/// only. Cars and crates are objects, a few of them spare.
 void add_town_block(WorldBuilder& build, const TownBlock& block);
 
 }  // namespace holdfast::simulation

@@ -19,8 +19,8 @@ inline constexpr double kRideSpeed = 1.0;         ///< m/s
 inline constexpr double kRideAcceleration = 0.6;  ///< m/s^2
 inline constexpr double kRideWait = 4.0;          ///< s at rest before and after
 
-/// How far a lift has gone `seconds` after the robot came to rest in it, towards `rise_m`: it
-/// waits, sets off with the acceleration, goes at the speed if the way is long enough, stops
+/// How far a lift has gone `seconds` after the robot came to rest in it, to `rise_m`: it waits,
+/// then sets off with the acceleration, goes at the speed if the way is long enough, stops
 /// likewise.
 double ride_height(double rise_m, double seconds);
 
