@@ -18,6 +18,7 @@ constexpr int kEnoughNeighbours = 5;
 constexpr int kSmoothings = 2;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFall = 1;           // metres
+constexpr double kBesideBrink = 2;   // metres
 constexpr double kRoofWorth = 0.05;  // of its size, against ground that is no roof
 constexpr float kThickness = 0.1F;   // of what counts as one surface, metres
 
@@ -123,45 +124,41 @@ bool is_drivable(const Ground& ground, std::size_t i, const RobotReach& reach) {
   return !(std::hypot(slope_x, slope_y) > reach.most_slope);
 }
 
-/// Metres to the nearest brink: a cell beside which it goes down further than a robot may fall.
-std::vector<float> distances_to_brinks(const Ground& ground) {
+/// True when the ground near a cell lies lower than a robot may fall.
+bool is_at_brink(const Ground& ground, std::size_t i) {
   const Grid& grid = ground.grid;
-  std::vector<bool> brink(grid.size(), false);
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    grid.around(i, [&](std::size_t k, double) {
-      if (ground.height[k] < ground.height[i] - kFall) brink[i] = true;
-    });
+  const auto reach = static_cast<std::int32_t>(kBesideBrink / grid.cell_m);
+  for (std::int32_t y = grid.row(i) - reach; y <= grid.row(i) + reach; ++y) {
+    for (std::int32_t x = grid.column(i) - reach; x <= grid.column(i) + reach; ++x) {
+      if (!grid.contains(x, y)) continue;
+      if (ground.height[grid.index(x, y)] < ground.height[i] - kFall) return true;
+    }
   }
-  return distances_to(grid, brink);
+  return false;
 }
 
-/// True when most of a part's rim is a brink: the part is a roof.
-bool is_raised(const Ground& ground, const std::vector<std::size_t>& part,
-               const std::vector<float>& to_brink) {
-  const double cell = ground.grid.cell_m;
-  const double least_room =
-      ground.room[*std::min_element(part.begin(), part.end(), [&](std::size_t a, std::size_t b) {
-        return ground.room[a] < ground.room[b];
-      })];
+/// True when most of a part's rim lies at a brink: the part is a roof.
+bool is_raised(const Ground& ground, const std::vector<std::size_t>& part) {
+  float least_room = std::numeric_limits<float>::infinity();
+  for (const std::size_t i : part) least_room = std::min(least_room, ground.room[i]);
   std::size_t rim = 0;
   std::size_t brinks = 0;
   for (const std::size_t i : part) {
-    if (ground.room[i] > least_room + cell) continue;
+    if (ground.room[i] > least_room + ground.grid.cell_m) continue;
     ++rim;
-    brinks += to_brink[i] < ground.room[i] + 3 * cell ? 1U : 0U;
+    brinks += is_at_brink(ground, i) ? 1U : 0U;
   }
   return 2 * brinks > rim;
 }
 
 /// The largest part, where a roof counts for less than it is.
 std::vector<bool> largest_part(const Ground& ground, std::vector<bool> allowed) {
-  const std::vector<float> to_brink = distances_to_brinks(ground);
   std::vector<std::size_t> largest;
   double most = 0;
   for (std::size_t i = 0; i < allowed.size(); ++i) {
     if (!allowed[i]) continue;
     auto part = connected_cells(ground.grid, i, allowed);
-    const double worth = is_raised(ground, part, to_brink) ? kRoofWorth : 1;
+    const double worth = is_raised(ground, part) ? kRoofWorth : 1;
     if (worth * static_cast<double>(part.size()) <= most) continue;
     most = worth * static_cast<double>(part.size());
     largest = std::move(part);
