@@ -11,6 +11,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/progress_bar.hpp"
+#include "simulation/aliases/alias_output.hpp"
 #include "simulation/faults.hpp"
 #include "simulation/files/scenario_file.hpp"
 #include "simulation/log_output.hpp"
@@ -42,6 +43,8 @@ struct SimulateArguments {
   int threads = static_cast<int>(std::thread::hardware_concurrency());
   bool list = false;
   bool reference = false;
+  bool aliases = false;
+  bool aliases_each_scan = false;
 };
 
 void print_scenarios() {
@@ -85,6 +88,16 @@ void print_changes(const simulation::Simulation& simulation) {
 
 void print_remark(const simulation::Scenario& scenario) {
   if (!scenario.remark.empty()) std::printf("%s\n", scenario.remark.c_str());
+}
+
+/// After the log: where in it other places look the same.
+void add_aliases(const simulation::Simulation& simulation, const SimulateArguments& arguments) {
+  simulation::AliasModel model;
+  if (arguments.aliases_each_scan) model.every_m = 0;
+  const auto found = simulation::write_aliases(simulation, model, arguments.out);
+  if (!found) throw CommandFailed{1, found.error().message};
+  std::printf("aliases.jsonl: %.1f s look like other places, in %zu stretches\n", found->aliased_s,
+              found->stretches);
 }
 
 simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
@@ -139,6 +152,7 @@ void simulate(const SimulateArguments& arguments) {
               to_seconds((*simulation)->end_time() - (*simulation)->start_time()));
   print_changes(**simulation);
   print_remark((*simulation)->scenario());
+  if (arguments.aliases || arguments.aliases_each_scan) add_aliases(**simulation, arguments);
   std::printf("the drive begins at --initial-pose \"%s\"\n", pose.c_str());
 }
 
@@ -236,6 +250,13 @@ void add_hardships(CLI::App& command, SimulateArguments& arguments) {
       ->type_name("M");
 }
 
+void add_alias_flags(CLI::App& command, SimulateArguments& arguments) {
+  command.add_flag("--aliases", arguments.aliases,
+                   "also write aliases.jsonl: for each metre of the drive the other places where a "
+                   "scan would look the same within noise, one line a stretch");
+  command.add_flag("--aliases-each-scan", arguments.aliases_each_scan, "the same for each scan");
+}
+
 }  // namespace
 
 void add_simulate_command(CLI::App& app) {
@@ -273,6 +294,7 @@ void add_simulate_command(CLI::App& app) {
                    "threads for casting rays (default: all cores); the output does not depend "
                    "on it")
       ->type_name("N");
+  add_alias_flags(*command, *arguments);
   command->add_flag("--list", arguments->list, "show the scenarios and stop");
   command->add_flag("--reference", arguments->reference,
                     "show how to write a scenario file, and stop");

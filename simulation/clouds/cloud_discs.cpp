@@ -30,6 +30,7 @@ constexpr double kNear = 1e-3;    // metres that always count as on the plane
 constexpr int kPasses = 2;        // the cleanest plane may come from a neighbour's neighbour
 constexpr std::size_t kSectors = 6;
 constexpr double kReach = 0.7;
+constexpr double kLargestDisc = 0.5;  // metres
 constexpr double kRimReach = 0.4;
 constexpr double kLeafReach = 0.35;
 constexpr double kLargestLeaf = 0.1;  // metres
@@ -207,7 +208,9 @@ class DiscFitter {
     const auto filled =
         std::find_if(nearest.begin(), nearest.end(), [](double d) { return d >= 0; });
     if (filled == nearest.end()) return kNear;
-    return rim ? kRimReach * *(filled + (nearest.end() - filled) / 2) : kReach * nearest.back();
+    const double radius =
+        rim ? kRimReach * *(filled + (nearest.end() - filled) / 2) : kReach * nearest.back();
+    return std::min(kLargestDisc, radius);
   }
 
   float leaf_radius(std::size_t i) const {

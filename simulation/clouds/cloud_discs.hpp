@@ -21,9 +21,9 @@ struct CloudDiscs {
 /// or an edge takes the clean plane of a neighbour, or of a neighbour's neighbour, that it lies on,
 /// so that corners stay sharp. The centre is the point moved onto its plane, which takes most of
 /// the noise away. The radius is 0.7 of the distance to the farthest of the nearest neighbours in
-/// six directions, so that discs overlap into a closed surface; a point with a third of the
-/// directions empty lies on a rim, and gets 0.4 of the middle distance: the surface then ends
-/// within half a spacing of its last point.
+/// six directions, so that discs overlap into a closed surface, and at most half a metre: wider
+/// gaps stay gaps. A point with a third of the directions empty lies on a rim, and gets 0.4 of the
+/// middle distance: the surface then ends within half a spacing of its last point.
 ///
 /// Points without a plane get a small disc, 0.35 of the distance to their neighbours (at most 10
 /// cm), with a direction drawn at random: leaves face all ways, so that a crown lets the same share

@@ -51,8 +51,9 @@ Status find_way(Scenario& scenario) {
   scenario.style.distance_m = std::clamp(std::floor(found->length_m), 1.0, kLongestDrive);
   scenario.remark = fmt::format(
       "the way found through this world is {:.0f} m long, closed; {:.0f} % of it goes back as it "
-      "came",
-      found->length_m, 100 * found->shared_share);
+      "came{}",
+      found->length_m, 100 * found->shared_share,
+      found->on_ground ? "" : "; there is no ground: it is as high as the lowest things around");
   return Done{};
 }
 

@@ -9,6 +9,7 @@
 
 #include "simulation/wayfinding/ground.hpp"
 #include "simulation/wayfinding/shortest_way.hpp"
+#include "simulation/wayfinding/walled_space.hpp"
 
 namespace holdfast::simulation {
 namespace {
@@ -24,6 +25,8 @@ constexpr double kSameWayCost = 3;  // added to the cost of a metre on the way o
 constexpr double kStep = 0.5;       // metres between the points of a line
 constexpr double kLane = 0.6;       // metres to the right
 constexpr double kShortest = 8;     // metres of a way worth driving
+constexpr double kShortWay = 60;    // of which one asks whether the ground was taken out
+constexpr double kMuchFarther = 4;  // times as far it goes between things without a ground
 constexpr double kHeightReach = 1;  // metres around a place over which its height is averaged
 constexpr int kHeightMean = 8;      // corners over which heights are averaged, 0.5 m apart
 constexpr int kSmoothings = 20;
@@ -168,26 +171,43 @@ Route route_along(const Line& line, const Ground& ground) {
   return Route::closed(corners);
 }
 
+/// The loop through a space, and how long it is before it is smoothed.
+struct Way {
+  Ground ground;
+  Loop loop;
+  Line line;
+  double length_m = 0;
+};
+
+Way way_through(Ground ground) {
+  Way way{std::move(ground), {}, {}, 0};
+  const auto& usable = way.ground.usable;
+  if (std::none_of(usable.begin(), usable.end(), [](bool b) { return b; })) return way;
+  way.loop = long_loop(way.ground);
+  for (const std::size_t cell : way.loop.cells) way.line.push_back(way.ground.grid.center(cell));
+  way.length_m = length_of(way.line);
+  return way;
+}
+
 }  // namespace
 
 Result<FoundRoute> find_route(const World& world) {
   const RobotReach reach;
-  const Ground ground = find_ground(world, reach);
-  if (std::none_of(ground.usable.begin(), ground.usable.end(), [](bool b) { return b; })) {
-    return Error{"route: expected ground that a robot can drive over, found none"};
+  Way way = way_through(find_ground(world, reach));
+  bool on_ground = true;
+  if (way.length_m < kShortWay) {
+    Way walled = way_through(find_walled_space(world, reach));
+    on_ground = walled.length_m <= kMuchFarther * way.length_m;
+    if (!on_ground) way = std::move(walled);
   }
-  const Loop loop = long_loop(ground);
-  Line line;
-  for (const std::size_t cell : loop.cells) line.push_back(ground.grid.center(cell));
-  const double length = length_of(line);
-  if (length < kShortest) {
+  if (way.length_m < kShortest) {
     return Error{fmt::format(
-        "route: expected connected ground for a way of {} m out and back, found {:.1f} m",
-        kShortest, length)};
+        "route: expected connected ground for a closed way of {} m, found one of {:.1f} m",
+        kShortest, way.length_m)};
   }
-  line = evenly(kept_right(evenly(line), ground, reach.radius_m));
-  smooth(line, ground, reach.radius_m);
-  FoundRoute found{route_along(evenly(line), ground), 0, loop.shared_share};
+  Line line = evenly(kept_right(evenly(way.line), way.ground, reach.radius_m));
+  smooth(line, way.ground, reach.radius_m);
+  FoundRoute found{route_along(evenly(line), way.ground), 0, way.loop.shared_share, on_ground};
   found.length_m = found.route.length();
   return found;
 }

@@ -10,7 +10,8 @@ namespace holdfast::simulation {
 struct FoundRoute {
   Route route;
   double length_m = 0;
-  double shared_share = 0;  ///< of the way out, along which the way back runs too
+  double shared_share = 0;  ///< of the way back, less than 1 m from the way out
+  bool on_ground = true;    ///< false: over ground that the world does not have
 };
 
 /// Finds the long way through a world: from one end of the largest connected drivable ground
@@ -24,7 +25,10 @@ struct FoundRoute {
 /// has two lanes and its end a turning circle. The way is smoothed without coming closer to things
 /// than the robot's radius, and takes its heights from the ground, averaged over 4 m.
 ///
-/// Deterministic. Takes some seconds for a square kilometre. Error: no ground that leads 8 m on.
+/// Where the ground leads less than 60 m on, and the space between things (walled_space.hpp) four
+/// times as far, the ground was taken out of the map and that space is used.
+///
+/// Deterministic. Takes some seconds for a square kilometre. Error: no closed way of 8 m.
 Result<FoundRoute> find_route(const World& world);
 
 }  // namespace holdfast::simulation

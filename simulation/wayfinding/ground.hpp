@@ -34,7 +34,7 @@ struct Ground {
 /// 0.25 m wide, larger only where that would make more than 20 million. A cell without a surface
 /// takes the height of its neighbours when five of them have one. What is below the back of a
 /// triangle is within a solid, and no ground. A part from most of whose rim it goes down by more
-/// than a metre is a roof, and used only when there is nothing else. No ground at all: no cell is
+/// than a metre is a roof, which counts for a twentieth of its size. No ground at all: no cell is
 /// usable.
 Ground find_ground(const World& world, const RobotReach& reach);
 

@@ -178,6 +178,12 @@ TEST(SimulatorBench, KeepsItsKeys) {
       EXPECT_NEAR(result[kind]["simulated_s"].get<double>(), 0.5, 0.1) << result["scenario"];
     }
   }
+  const auto& cloud = report->data["cloud"];
+  EXPECT_GT(cloud["in_process"]["realtime_factor"].get<double>(), 0);
+  EXPECT_GT(cloud["discs"].get<std::size_t>(), 2'500'000U);
+  for (const char* key : {"discs_s", "way_s", "tree_s", "peak_rss_mb"}) {
+    EXPECT_GT(cloud[key].get<double>(), 0) << key;
+  }
 }
 
 }  // namespace

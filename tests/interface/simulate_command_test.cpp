@@ -62,6 +62,29 @@ TEST(ScenarioFileOnDisk, IsDrivenThrough) {
   EXPECT_THAT(wrong.out, HasSubstr("files that end in .yaml"));
 }
 
+TEST(WorldFileOnDisk, IsDrivenThroughAlongAWayThatIsFound) {
+  const Workspace out;
+  std::ofstream(out / "field.obj") << "v 0 0 0\nv 40 0 0\nv 40 20 0\nv 0 20 0\nf 1 2 3 4\n"
+                                   << "v 0 0 6\nv 40 0 6\nf 1 2 6 5\n";
+  const std::string drive = out / "drive";
+  const auto run =
+      expect_run("simulate " + (out / "field.obj") + " --duration 2 --out " + drive, 0);
+  EXPECT_THAT(run.out, HasSubstr("the way found through this world is"));
+  EXPECT_THAT(content(drive + "/config.yaml"), HasSubstr("# the way found through this world is"));
+  EXPECT_TRUE(std::filesystem::exists(drive + "/map.pcd"));
+  EXPECT_FALSE(std::filesystem::exists(drive + "/aliases.jsonl"));
+  const auto wrong = expect_run("simulate none.pcd --out " + drive, 2);
+  EXPECT_THAT(wrong.out, HasSubstr("none.pcd"));
+}
+
+TEST(AliasesOfADrive, AreWrittenWhenAskedFor) {
+  const Workspace out;
+  const std::string drive = out / "drive";
+  const auto run = expect_run("simulate box --duration 4 --aliases --out " + drive, 0);
+  EXPECT_THAT(run.out, HasSubstr("aliases.jsonl: 4.0 s look like other places"));
+  EXPECT_THAT(content(drive + "/aliases.jsonl"), HasSubstr("\"poses\":[["));
+}
+
 TEST_F(HardDrive, AnotherLidarSeesOtherPoints) {
   const auto plain = drive("plain", "");
   const auto vlp = drive("vlp", "--lidar vlp16");

@@ -119,7 +119,7 @@ TEST(FoundRoute, TooSteepGroundIsNoWay) {
   build.quad({0, 0, 0}, {60, 0, 30}, {60, 10, 30}, {0, 10, 0}, materials::kAsphalt);
   const auto route = find_route(build.build());
   ASSERT_FALSE(route);
-  EXPECT_NE(route.error().message.find("expected ground"), std::string::npos);
+  EXPECT_NE(route.error().message.find("expected connected ground"), std::string::npos);
   EXPECT_FALSE(find_route(World()));
 }
 
@@ -129,6 +129,26 @@ TEST(FoundRoute, TakesTheLargerOfTwoGroundsThatDoNotMeet) {
   build.floor({20, 0}, {60, 10}, 1, materials::kAsphalt);
   along(found(build).route,
         [](const Route::Place& place) { EXPECT_NEAR(place.position.z(), 1, 1e-5); });
+}
+
+// Two rows of poles along a street of 12 m, as a map shows it from which the ground was taken.
+TEST(FoundRoute, GoesBetweenThingsWhereTheGroundWasTakenOut) {
+  WorldBuilder build;
+  for (double x = 0; x <= 200; x += 2) {
+    for (const double y : {0.0, 12.0}) {
+      build.cylinder({x, y, 0.02 * x}, 0.3, 5, materials::kWood, 8);
+    }
+  }
+  const FoundRoute way = found(build);
+  EXPECT_FALSE(way.on_ground);
+  EXPECT_GT(way.length_m, 2 * (200 - 2 * 25));
+  along(way.route, [](const Route::Place& place) {
+    const Vector3d& p = place.position;
+    EXPECT_GT(p.y(), 0.3 + kRadius);
+    EXPECT_LT(p.y(), 12 - 0.3 - kRadius);
+    // The lower fifth of what stands within 14 m, and the mean of 25 m beyond the ends.
+    EXPECT_NEAR(p.z(), 0.02 * p.x(), 0.02 * 25);
+  });
 }
 
 TEST(ShortestWays, AreThoseOfTheGrid) {
@@ -155,7 +175,8 @@ TEST(AutoRoute, OfAScenarioFileIsFoundAndSaidInARemark) {
       << scenario->remark;
   const auto none = read_scenario_file(folder.write("none.yaml", "world: []\nroute: auto\n"));
   ASSERT_FALSE(none);
-  EXPECT_NE(none.error().message.find("none.yaml:2: route: expected ground"), std::string::npos)
+  EXPECT_NE(none.error().message.find("none.yaml:2: route: expected connected ground"),
+            std::string::npos)
       << none.error().message;
 }
 
