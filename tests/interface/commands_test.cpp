@@ -70,11 +70,14 @@ TEST(SimulateCommand, AnUnknownScenarioIsWrongUsageAndListsTheKnownOnes) {
 TEST(SimulateCommand, ABadEventIsWrongUsageAndShowsTheForm) {
   const Workspace out;
   const std::string to = " --duration 1 --out " + out / "sim";
-  for (const char* event : {"earthquake@3", "blind", "blind@", "blind@x", "kidnap@3+2"}) {
+  for (const char* event : {"earthquake@3", "blind", "blind@", "blind@x", "imu_bias_jump@3+2"}) {
     const auto run = expect_run("simulate office --event " + std::string(event) + to, 2);
     EXPECT_THAT(run.out, HasSubstr(event)) << run.out;
   }
   expect_run("simulate office --event blind@500" + to, 2, "blind");
+  expect_run("simulate office --duration 9 --event kidnap@3+1 --out " + out / "sim", 2,
+             "expected at least");
+  expect_run("simulate office --motion flying" + to, 2, "handheld");
   expect_run("simulate office --duration -1 --out " + out / "sim", 2);
   expect_run("simulate office --duration fast --out " + out / "sim", 2);
   EXPECT_TRUE(out.names().empty());
