@@ -13,7 +13,7 @@
 #include "apps/progress_bar.hpp"
 #include "simulation/aliases/alias_output.hpp"
 #include "simulation/faults.hpp"
-#include "simulation/files/scenario_file.hpp"
+#include "simulation/files/simulator_reference.hpp"
 #include "simulation/log_output.hpp"
 #include "simulation/sensors/imu/imu_file.hpp"
 #include "simulation/sensors/lidar/lidar_file.hpp"
@@ -132,7 +132,7 @@ simulation::SimulationOptions options_of(const SimulateArguments& arguments) {
 void simulate(const SimulateArguments& arguments) {
   if (arguments.list) return print_scenarios();
   if (arguments.reference) {
-    std::printf("%s", simulation::scenario_reference().c_str());
+    std::printf("%s", simulation::simulator_reference().c_str());
     return;
   }
   if (arguments.scenario.empty()) {

@@ -113,7 +113,7 @@ Status add_cloud_row(const BenchOptions& options, BenchReport& report) {
                           {"tree_s", known(tree_s)},
                           {"peak_rss_mb", known(pipeline::peak_rss_mb())}};
   report.markdown += fmt::format(
-      "\nA {} of {} discs as a world: {} times real time with {} threads ({} by CPU time of one "
+      "\nA {} of {} discs as a world: {} real time with {} threads ({} by CPU time of one "
       "core). Before it begins: {:.1f} s for the discs, {:.1f} s for a way through them, {:.1f} s "
       "for the tree; {:.0f} MB at most.\n",
       cloud->file.empty() ? "made-up town" : "recorded campus", discs,

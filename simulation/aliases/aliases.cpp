@@ -119,6 +119,11 @@ class AliasFinder {
     return out;
   }
 
+  std::size_t most_differing() const {
+    return check_.explained_by_noise() +
+           static_cast<std::size_t>(model_.differing_share * static_cast<double>(rays_.size()));
+  }
+
   std::vector<SE3> twins_of(const SE3& T_map_body) const {
     const SE3 T_map_lidar = T_map_body * lidar_.T_body_lidar;
     const RangeImage level =
@@ -133,7 +138,7 @@ class AliasFinder {
       };
       if (is_known(T_map_body) || std::any_of(twins.begin(), twins.end(), is_known)) continue;
       const std::size_t differing = check_.differing(seen, twin * lidar_.T_body_lidar);
-      if (differing <= check_.explained_by_noise()) twins.push_back(twin);
+      if (differing <= most_differing()) twins.push_back(twin);
     }
     return twins;
   }

@@ -16,7 +16,8 @@ struct AliasModel {
   std::size_t rows = 16;   ///< of the images that are compared
   std::size_t columns = 360;
   std::size_t places = 30;  ///< that are looked at closely, of those most like the one asked about
-  std::size_t verified = 10;  ///< of these, refined and verified
+  std::size_t verified = 10;   ///< of these, refined and verified
+  double differing_share = 0;  ///< of the rays, beyond what noise explains, that may differ
 };
 
 /// A stretch of a drive that looks like other places, all the while in the same way.

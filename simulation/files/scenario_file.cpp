@@ -7,12 +7,8 @@
 #include <cmath>
 
 #include "holdfast/io/yaml_block.hpp"
-#include "simulation/events/event_reference.hpp"
-#include "simulation/files/fault_reference.hpp"
 #include "simulation/files/part_files.hpp"
 #include "simulation/files/world_file.hpp"
-#include "simulation/sensors/imu/imu_file.hpp"
-#include "simulation/sensors/lidar/lidar_file.hpp"
 
 namespace holdfast::simulation {
 namespace {
@@ -206,14 +202,6 @@ Result<Scenario> scenario_of(const Result<YAML::Node>& document, const std::stri
   }
 }
 
-template <class Block>
-std::string keys_of(const char* name) {
-  Block block;
-  Fields fields;
-  io::collect_fields(name, block, fields);
-  return io::config_reference(fields);
-}
-
 }  // namespace
 
 Result<Scenario> read_scenario_file(const std::filesystem::path& path) {
@@ -222,46 +210,6 @@ Result<Scenario> read_scenario_file(const std::filesystem::path& path) {
 
 Result<Scenario> parse_scenario(const std::string& text, const std::string& name) {
   return scenario_of(io::parse_yaml(text, name), name);
-}
-
-std::string scenario_reference() {
-  return fmt::format(
-      "# Scenario files\n\n"
-      "`holdfast simulate FILE.yaml --out DIR` drives through a world that a file describes:\n\n"
-      "```yaml\nname: shed\nworld:\n  - floor: {{min: [0, 0], max: [20, 10]}}\n"
-      "  - wall: {{from: [0, 0], to: [20, 0], top: 4, openings: [{{start: 3, width: 1.2}}]}}\n"
-      "  - repeat:\n      times: 4\n      step: [4, 0, 0]\n      parts:\n"
-      "        - cylinder: {{base: [4, 5, 0], radius: 0.25, height: 4}}\n"
-      "route:\n  radius_m: 1.5\n  corners: [[2, 2], [18, 2], [18, 8], [2, 8]]\n"
-      "drive: {{speed_m_s: 1.5}}\n```\n\n"
-      "Lengths are metres, z is up, and walls are seen from the left of the way from their first\n"
-      "foot to their second. A route is closed; its corners are `[x, y]`, `[x, y, z]` or\n"
-      "`[x, y, z, radius_m]`; `route: auto` finds a way: from one end of the drivable ground to "
-      "the\n"
-      "other, and back another way where there is one. `people` is a list of a `route` and a\n"
-      "`speed_m_s` each, `vehicles`\n"
-      "likewise with a `kind` (car, van, bus); they keep to the direction of their routes. Who\n"
-      "walks or drives waits where the robot comes near. `regions` names stretches of the way:\n"
-      "a list of a `name` and a rectangle, `min` and `max`. Where a corner of the robot's route "
-      "stands\n"
-      "straight above the one before, a lift takes the robot there; `lifts` says what it looks "
-      "like\n"
-      "([lift.yaml](../simulation/scenarios/lift.yaml)). Who surveys a world takes the stairs: "
-      "the\n"
-      "map shows closed landing doors, and no cabin. Files of a `mesh` or a `cloud` are looked\n"
-      "up beside the scenario file; `holdfast simulate FILE.pcd` (or .ply, .obj) drives through\n"
-      "one as it is.\n"
-      "[garage.yaml](../simulation/scenarios/garage.yaml) is a whole one.\n\n"
-      "{}\n{}\n{}\n## Parts of the world\n\n{}{}"
-      "# Lidar files\n\n"
-      "`--lidar FILE.yaml` takes a LiDAR from a file; `--lidar NAME` one of {}.\n"
-      "The block `faults` says what it does wrong, by default nothing; `--faults lidar` gives any\n"
-      "LiDAR the usual sizes. Rain and dust (`--rain`, `--visibility`) are none of the sensor's:\n"
-      "they weaken returns, which limits the reach, and return some light themselves.\n\n"
-      "{}\n{}\n{}",
-      keys_of<DriveStyle>("drive"), keys_of<LiftPlan>("lifts"), keys_of<Region>("regions"),
-      part_reference(), event_reference(), fmt::join(lidar_names(), ", "), lidar_reference(),
-      imu_reference(), fault_reference());
 }
 
 }  // namespace holdfast::simulation

@@ -44,8 +44,8 @@ TEST(ConfigCommand, TheReferencePageIsWhatTheProgramPrints) {
 TEST(ConfigCommand, ThePageOfScenarioFilesIsWhatTheProgramPrints) {
   const ProgramRun run = run_program("simulate --reference");
   EXPECT_EQ(run.exit_code, 0);
-  EXPECT_EQ(first_difference(content(kSource / "docs/scenario_files.md"), run.out), "")
-      << "repair: holdfast simulate --reference > docs/scenario_files.md";
+  EXPECT_EQ(first_difference(content(kSource / "docs/simulator.md"), run.out), "")
+      << "repair: holdfast simulate --reference > docs/simulator.md";
 }
 
 TEST(ConfigCommand, TheShippedDefaultIsWhatTheProgramPrints) {
