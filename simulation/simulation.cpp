@@ -324,12 +324,21 @@ std::vector<GnssSample> Simulation::gnss_samples() const {
 
 const LidarClock& Simulation::lidar_clock() const { return parts_->lidar_clock; }
 
-std::vector<TrueReturn> Simulation::true_geometry(const Scan& scan) {
-  edges();
+Scan Simulation::in_true_time(const Scan& scan) const {
   Scan since_start = scan;
   since_start.stamp -= kEpoch;
   since_start.end_time -= kEpoch;
-  since_start = parts_->lidar_clock.in_true_time(since_start);
+  Scan out = parts_->lidar_clock.in_true_time(since_start);
+  out.stamp += kEpoch;
+  out.end_time += kEpoch;
+  return out;
+}
+
+std::vector<TrueReturn> Simulation::true_geometry(const Scan& scan) {
+  edges();
+  Scan since_start = in_true_time(scan);
+  since_start.stamp -= kEpoch;
+  since_start.end_time -= kEpoch;
   return true_returns(since_start, parts_->kinds_of(since_start), parts_->options.lidar,
                       parts_->drive, parts_->caster, {parts_->walkers, parts_->movers},
                       *parts_->geometry);
@@ -344,6 +353,7 @@ const std::vector<SimulatedEvent>& Simulation::events() const { return parts_->e
 const SimulationOptions& Simulation::options() const { return parts_->options; }
 const Scenario& Simulation::scenario() const { return parts_->scenario; }
 const Walkers& Simulation::people() const { return parts_->walkers; }
+const Movers& Simulation::movers() const { return parts_->movers; }
 const std::vector<ObjectChange>& Simulation::changes() const { return parts_->changes; }
 
 io::PointCloud Simulation::survey_map() {

@@ -11,6 +11,7 @@
 #include "holdfast/io/point_cloud.hpp"
 #include "simulation/change/world_change.hpp"
 #include "simulation/events/event.hpp"
+#include "simulation/movers/movers.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/simulation_options.hpp"
 #include "simulation/transport/lidar_clock.hpp"
@@ -90,6 +91,11 @@ class Simulation : public SensorSource {
   const Scenario& scenario() const;
   /// All who walk there, a crowd included; times from the start of the log.
   const Walkers& people() const;
+  /// What else moves; likewise.
+  const Movers& movers() const;
+  /// The scan with the times at which its points were truly measured, whatever the LiDAR's clock
+  /// said: truth_at() of them is where the robot was.
+  Scan in_true_time(const Scan& scan) const;
   /// What has changed in the world since the survey.
   const std::vector<ObjectChange>& changes() const;
 

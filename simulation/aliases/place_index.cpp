@@ -50,16 +50,17 @@ std::vector<float> PlaceIndex::inverse_ranges(const RangeImage& image) const {
 
 std::vector<float> PlaceIndex::signature_of(const std::vector<float>& inverse) const {
   std::vector<float> out;
+  const auto columns = static_cast<double>(rays_.columns);
   for (std::size_t row = 0; row < rays_.elevations.size(); ++row) {
     const float* values = &inverse[row * rays_.columns];
     for (std::size_t k = 0; k < kCoefficients; ++k) {
-      const double step = -2 * std::numbers::pi * static_cast<double>(k) / rays_.columns;
+      const double step = -2 * std::numbers::pi * static_cast<double>(k) / columns;
       const std::complex<double> turn = std::polar(1.0, step);
       std::complex<double> phase = 1, sum = 0;
       for (std::size_t column = 0; column < rays_.columns; ++column, phase *= turn) {
         sum += static_cast<double>(values[column]) * phase;
       }
-      out.push_back(static_cast<float>(std::abs(sum) / rays_.columns));
+      out.push_back(static_cast<float>(std::abs(sum) / columns));
     }
   }
   return out;
