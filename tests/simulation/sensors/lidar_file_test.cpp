@@ -83,6 +83,33 @@ TEST_F(LidarOnDisk, HasEvenBeamsOrItsOwn) {
   EXPECT_EQ(own->beams[1].fire_offset, 3000);
 }
 
+TEST_F(LidarOnDisk, HasFaultsInABlockAndFactsThatTheyNeed) {
+  const auto model = read(
+      "divergence_mrad: 1.5\nreach_at_10_percent_m: 30\n"
+      "faults: {dropout_share: 0.25, mixed_pixels: true, kept_return: last}");
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_NEAR(model->divergence_rad, 0.0015, 1e-12);
+  EXPECT_EQ(model->reach_at_10_percent_m, 30);
+  EXPECT_EQ(model->faults.dropout_share, 0.25);
+  EXPECT_TRUE(model->faults.mixed_pixels);
+  EXPECT_EQ(model->faults.kept_return, "last");
+  EXPECT_EQ(model->faults.ghost_share, 0);
+  EXPECT_NE(complaint("faults: {dropout_share: 2}").find("from 0 to 1"), std::string::npos);
+  EXPECT_NE(complaint("faults: {kept_return: first}").find("strongest|last"), std::string::npos);
+}
+
+TEST_F(LidarOnDisk, MayBeARosette) {
+  const auto model = read("pattern: rosette\nbeams: 2\nlowest_deg: -10\nhighest_deg: 30");
+  ASSERT_TRUE(model) << model.error().message;
+  ASSERT_TRUE(model->rosette);
+  EXPECT_NEAR(model->rosette->half_band_rad, 10 * std::numbers::pi / 180, 1e-12);
+  EXPECT_NEAR(model->beams[1].elevation_rad, 20 * std::numbers::pi / 180, 1e-12);
+  EXPECT_NE(complaint("pattern: flower").find("spinning|rosette"), std::string::npos);
+  EXPECT_NE(complaint("pattern: rosette\nturn_hz: 11").find("at most rate_hz"), std::string::npos);
+  EXPECT_NE(complaint("pattern: rosette\nelevations_deg: [1]").find("from lowest_deg"),
+            std::string::npos);
+}
+
 TEST_F(LidarOnDisk, ErrorsSayWhatIsExpected) {
   EXPECT_NE(complaint("beam: 3").find("nearest known key is 'beams'"), std::string::npos);
   EXPECT_NE(complaint("fire_step_us: 9").find("less than the 55.6 us of a column"),
