@@ -109,6 +109,11 @@ TEST(Lift, NeverTouchesTheRobot) {
   }
 }
 
+// Boxes are carried on steadily for up to half of 40 columns of 1800, here 11 ms, while the cabin
+// speeds up with 0.6 m/s^2: 36 micrometres of height, which a ray of 15 degrees that meets floor or
+// ceiling turns into four times as much.
+constexpr double kCarriedOn = 0.5 * 0.6 * 0.0111 * 0.0111 * 4 + 1e-6;
+
 TEST(Lift, ShowsTheLidarTheSameCabinAllTheWay) {
   SimulationOptions options = noise_free("lift", 200);
   options.lidar.keep_all_returns = true;
@@ -131,7 +136,7 @@ TEST(Lift, ShowsTheLidarTheSameCabinAllTheWay) {
     ASSERT_EQ(scan.points.size(), scans[0].points.size());
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
       const Vector3d off = position(scan.points[i]) - position(scans[0].points[i]);
-      ASSERT_LT(off.norm(), 1e-4) << "point " << i;
+      ASSERT_LT(off.norm(), kCarriedOn) << "point " << i;
     }
   }
 }
