@@ -134,7 +134,9 @@ TEST_F(BagRoundTrip, WheelsAndSatellitesNeedATopic) {
   auto gnss = BagWriter::create(folder / "gnss.bag", topics);
   EXPECT_TRUE((*gnss)->write(imu_at(kStart)));
   EXPECT_TRUE((*gnss)->write(GnssSample{.t = kStart + 1}));
-  EXPECT_FALSE((*gnss)->write(WheelSample{.t = kStart + 1}));
+  WheelSample wheel;
+  wheel.t = kStart + 1;
+  EXPECT_FALSE((*gnss)->write(wheel));
   EXPECT_TRUE((*gnss)->close());
 }
 
