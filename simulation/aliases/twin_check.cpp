@@ -35,7 +35,8 @@ TwinCheck::Step TwinCheck::step(const RangeImage& seen, const SE3& T_map_image,
     // The plane n (o + r d) = c: moving by x and turning by w, dr = -n (x + r w z x d) / (n d).
     const Vector3d lever = image.range[i] * Vector3d(-direction.y(), direction.x(), 0);
     Vector4d J;
-    J << -normal / along, -normal.dot(lever) / along;
+    J.head<3>() = -normal / along;
+    J[3] = -normal.dot(lever) / along;
     const double error = image.range[i] - seen.range[i];
     const double relative = error / scale;
     const double weight = 1 / ((1 + relative * relative) * (1 + relative * relative));
