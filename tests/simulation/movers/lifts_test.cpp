@@ -110,10 +110,12 @@ TEST(Lift, NeverTouchesTheRobot) {
 }
 
 // Boxes are carried on steadily for up to half of 40 columns of 1800, here 11 ms, while the cabin
-// speeds up with 0.6 m/s^2: 37 micrometres of height, which a ray that meets floor or ceiling at 14
-// degrees (beams of 15, the LiDAR tilted by 1) turns into more. Of two scans, one may be of
-// speeding up, one of braking.
-const double kCarriedOn = 2 * (0.5 * 0.6 * 0.0111 * 0.0111 / std::sin(14 * M_PI / 180) + 1e-6);
+// speeds up with 0.6 m/s^2: 37 micrometres of height, beside the 10 by which it may not follow the
+// robot. A ray that meets floor or ceiling at 14 degrees (beams of 15, the LiDAR tilted by 1) turns
+// them into more. Of two scans, one may be of speeding up, one of braking.
+constexpr double kCarriedOn = 0.5 * 0.6 * 0.0111 * 0.0111;
+constexpr double kFollows = 1e-5;
+const double kSeen = 2 * ((kCarriedOn + kFollows) / std::sin(14 * M_PI / 180) + 1e-6);
 
 TEST(Lift, ShowsTheLidarTheSameCabinAllTheWay) {
   SimulationOptions options = noise_free("lift", 200);
@@ -137,7 +139,7 @@ TEST(Lift, ShowsTheLidarTheSameCabinAllTheWay) {
     ASSERT_EQ(scan.points.size(), scans[0].points.size());
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
       const Vector3d off = position(scan.points[i]) - position(scans[0].points[i]);
-      ASSERT_LT(off.norm(), kCarriedOn) << "point " << i;
+      ASSERT_LT(off.norm(), kSeen) << "point " << i;
     }
   }
 }
