@@ -1,4 +1,5 @@
 #include "simulation/events/event.hpp"
+#include "simulation/events/event_reference.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,6 +28,12 @@ TEST(Event, IsParsedFromNameStartAndDuration) {
   EXPECT_EQ(parse_event("imu_off@4")->duration, 2 * kSecond);
   EXPECT_EQ(parse_event("clock_jump@4")->duration, 0) << "for good";
   EXPECT_EQ(parse_event("clock_jump@4+3")->duration, 3 * kSecond);
+}
+
+TEST(Event, EachStandsInTheReference) {
+  for (const std::string_view name : event_names()) {
+    EXPECT_THAT(event_reference(), HasSubstr("| `" + std::string(name) + "` |"));
+  }
 }
 
 TEST(Event, ErrorsShowFormNamesAndWhatWasFound) {
