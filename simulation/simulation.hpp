@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "holdfast/core/aiding_data.hpp"
 #include "holdfast/core/result.hpp"
 #include "holdfast/core/sensor_data.hpp"
 #include "holdfast/io/point_cloud.hpp"

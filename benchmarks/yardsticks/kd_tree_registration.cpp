@@ -6,24 +6,13 @@
 #include <cmath>
 #include <nanoflann.hpp>
 
+#include "holdfast/core/point_set.hpp"
+
 namespace holdfast::benchmarks {
 namespace {
 
 constexpr std::size_t kNeighbours = 5;
 constexpr std::size_t kLeafSize = 16;  // the fastest of 5, 10, 16 and 25
-
-struct PointSet {
-  const std::vector<Eigen::Vector3f>& points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
 
 using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointSet>,
                                                   PointSet, 3, std::uint32_t>;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "holdfast/core/result.hpp"
+#include "holdfast/core/se3.hpp"
 #include "holdfast/core/time.hpp"
 
 namespace holdfast {
@@ -34,6 +35,26 @@ struct Scan {
   bool has_ring = false;
   bool has_point_times = false;      ///< false: offsets are all zero and nothing can be deskewed
   std::uint32_t invalid_points = 0;  ///< NaN or infinite points dropped while reading
+};
+
+/// What the wheels of a robot tell. Nothing here estimates with it, nor with satellites.
+struct WheelSample {
+  TimeNs t = 0;                ///< end of the interval over which ticks were counted
+  double speed_m_s = 0;        ///< of the body's origin along its x axis
+  double yaw_rate_rad_s = 0;   ///< about the body's z axis
+  double speed_sigma_m_s = 0;  ///< as the wheels know it: slip is not in it
+  double yaw_rate_sigma_rad_s = 0;
+  SE3 T_odom_body;  ///< summed up from the above in a plane since the start; drifts
+};
+
+/// A position from satellites, WGS 84.
+struct GnssSample {
+  TimeNs t = 0;
+  bool has_fix = false;     ///< without one the position is not a number
+  double latitude_deg = 0;  ///< north is positive
+  double longitude_deg = 0;
+  double altitude_m = 0;  ///< above the ellipsoid
+  Eigen::Vector3d sigma_enu_m = Eigen::Vector3d::Zero();
 };
 
 using SensorEvent = std::variant<ImuSample, Scan>;

@@ -29,10 +29,10 @@ constexpr std::size_t kNowhere = kTopics;
 /// Topics without a name do not take part.
 std::vector<bag::TopicInfo> named_topics(const BagWriter::Topics& topics, Places& places) {
   const std::array<bag::TopicInfo, kTopics> all = {
-      {{topics.imu, ros::kImuType, ros::kImuMd5, ros::kImuDefinition},
-       {topics.points, ros::kPointCloud2Type, ros::kPointCloud2Md5, ros::kPointCloud2Definition},
-       {topics.wheel, ros::kOdometryType, ros::kOdometryMd5, ros::kOdometryDefinition},
-       {topics.gnss, ros::kNavSatFixType, ros::kNavSatFixMd5, ros::kNavSatFixDefinition}}};
+      {{topics.imu, ros::kImuType, ros::kImuMd5, ros::imu_definition()},
+       {topics.points, ros::kPointCloud2Type, ros::kPointCloud2Md5, ros::point_cloud2_definition()},
+       {topics.wheel, ros::kOdometryType, ros::kOdometryMd5, ros::odometry_definition()},
+       {topics.gnss, ros::kNavSatFixType, ros::kNavSatFixMd5, ros::nav_sat_fix_definition()}}};
   std::vector<bag::TopicInfo> named;
   for (std::size_t i = 0; i < kTopics; ++i) {
     places[i] = all[i].topic.empty() ? kNowhere : named.size();

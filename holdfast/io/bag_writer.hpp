@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 
-#include "holdfast/core/aiding_data.hpp"
 #include "holdfast/core/result.hpp"
 #include "holdfast/core/sensor_data.hpp"
 

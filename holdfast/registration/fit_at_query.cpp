@@ -6,6 +6,7 @@
 #include <nanoflann.hpp>
 #include <optional>
 
+#include "holdfast/core/point_set.hpp"
 #include "holdfast/registration/levenberg_marquardt.hpp"
 
 namespace holdfast::registration {
@@ -22,26 +23,16 @@ constexpr double kLeastElongation = 3.0;  // of a line: eigenvalue along against
 constexpr double kSettledM = 1e-3;        // motion below which no new search is made
 constexpr double kSettledRad = 1e-4;
 
-struct PointSet {
-  std::vector<Vector3f> points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
 /// Points of one kind with their tree.
 struct Cloud {
   using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointSet>,
                                                     PointSet, 3, std::uint32_t>;
-  explicit Cloud(std::vector<Vector3f> points)
-      : set{std::move(points)}, index(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
+  explicit Cloud(std::vector<Vector3f> its_points)
+      : points(std::move(its_points)),
+        set{points},
+        index(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
 
+  std::vector<Vector3f> points;
   PointSet set;
   Index index;
 };
@@ -59,9 +50,9 @@ struct Neighbours {
     // The search gives up where even the last neighbour would be too far.
     distance_sq[static_cast<std::size_t>(most) - 1] = static_cast<float>(radius * radius);
     const Vector3f query = p.cast<float>();
-    if (!cloud.set.points.empty()) cloud.index.findNeighbors(found, query.data(), {});
+    if (!cloud.points.empty()) cloud.index.findNeighbors(found, query.data(), {});
     count = found.size();
-    for (std::size_t i = 0; i < count; ++i) points[i] = cloud.set.points[index[i]].cast<double>();
+    for (std::size_t i = 0; i < count; ++i) points[i] = cloud.points[index[i]].cast<double>();
   }
 };
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "holdfast/core/point_set.hpp"
 #include "holdfast/core/random.hpp"
 
 namespace holdfast::simulation {
@@ -35,19 +36,6 @@ constexpr double kRimReach = 0.4;
 constexpr double kLeafReach = 0.35;
 constexpr double kLargestLeaf = 0.1;  // metres
 constexpr std::size_t kLeafNeighbours = 4;
-
-struct PointSet {
-  const std::vector<Vector3f>& points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
 
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointSet>,
                                                  PointSet, 3, std::uint32_t>;

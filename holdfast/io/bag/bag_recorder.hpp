@@ -17,7 +17,7 @@ struct TopicInfo {
   std::string topic;
   std::string_view type;
   std::string_view md5;
-  std::string_view definition;
+  std::string definition;
 };
 
 /// Writes serialised messages as a ROS bag of format 2.0 with an index.

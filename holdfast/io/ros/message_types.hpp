@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 /// Names, checksums and definitions of the messages that are read and written, as ROS 1 knows them.
@@ -15,9 +16,9 @@ inline constexpr std::string_view kNavSatFixType = "sensor_msgs/NavSatFix";
 inline constexpr std::string_view kNavSatFixMd5 = "2d3a8cd499b9b4a0249fb98fd05cfa48";
 
 /// The message's definition and those of all messages in it, without comments.
-extern const std::string_view kPointCloud2Definition;
-extern const std::string_view kImuDefinition;
-extern const std::string_view kOdometryDefinition;
-extern const std::string_view kNavSatFixDefinition;
+std::string point_cloud2_definition();
+std::string imu_definition();
+std::string odometry_definition();
+std::string nav_sat_fix_definition();
 
 }  // namespace holdfast::io::ros

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "holdfast/core/aiding_data.hpp"
+#include "holdfast/core/sensor_data.hpp"
 
 namespace holdfast::io::ros {
 

@@ -53,8 +53,8 @@ struct ImuFaults {
                    0, 100000});
   }
 
-  /// What an industrial MEMS IMU of the class of a Bosch BMI088 has. From its data sheet
-  /// (BST-BMI088-DS001), a tolerance taken for three sigma: gyro instability 2 deg/h, scale 1 %,
+  /// What an industrial MEMS IMU of the class of a Bosch BMI088 has. As quoted for it (not compared
+  /// with its data sheet), a tolerance taken for three sigma: gyro instability 2 deg/h, scale 1 %,
   /// cross-axis 1 %; accelerometer cross-axis 0.5 %; full scales of 500 deg/s and 6 g in 16 bits;
   /// 64 Hz of bandwidth at 200 Hz. Of its class: accelerometer instability 0.03 mg (as an Xsens
   /// MTi-1), scale as its cross-axis. Chosen, without a source: the vibration of a wheeled robot

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "holdfast/core/aiding_data.hpp"
+#include "holdfast/core/sensor_data.hpp"
 #include "simulation/events/time_span.hpp"
 #include "simulation/motion/drive.hpp"
 

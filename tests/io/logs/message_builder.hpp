@@ -98,8 +98,8 @@ class BagBytes {
   explicit BagBytes(std::filesystem::path path, std::vector<bag::TopicInfo> further = {})
       : path_(std::move(path)) {
     std::vector<bag::TopicInfo> topics = {
-        {"/points", ros::kPointCloud2Type, ros::kPointCloud2Md5, ros::kPointCloud2Definition},
-        {"/imu", ros::kImuType, ros::kImuMd5, ros::kImuDefinition}};
+        {"/points", ros::kPointCloud2Type, ros::kPointCloud2Md5, ros::point_cloud2_definition()},
+        {"/imu", ros::kImuType, ros::kImuMd5, ros::imu_definition()}};
     for (auto& topic : further) topics.push_back(std::move(topic));
     auto recorder = bag::BagRecorder::create(path_, std::move(topics), false);
     EXPECT_TRUE(recorder) << recorder.error().message;
