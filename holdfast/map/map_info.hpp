@@ -12,7 +12,7 @@
 
 namespace holdfast::map {
 
-constexpr int kMapFormatVersion = 1;
+constexpr int kMapFormatVersion = 2;
 constexpr std::string_view kMapFileName = "map.yaml";
 
 struct TileInfo {

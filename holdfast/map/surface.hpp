@@ -18,7 +18,8 @@ struct Surface {
   float sigma_m;           ///< RMS distance of the supporting points to the plane or line
   std::uint16_t support;   ///< supporting points on a disc of one cell's radius, saturated
   SurfaceKind kind;
-  std::uint8_t more;  ///< 1: the next Surface belongs to the same cell
+  std::uint8_t more : 1;        ///< 1: the next Surface belongs to the same cell
+  std::uint8_t closed : 1 = 0;  ///< 1: a plane that no ray passes near its centre
 };
 static_assert(sizeof(Surface) == 32, "the layout is the format of a tile");
 

@@ -15,7 +15,7 @@
 namespace holdfast::map {
 
 constexpr std::uint32_t kTileMagic = 0x4c544648;  // "HFTL"
-constexpr std::uint32_t kTileVersion = 1;
+constexpr std::uint32_t kTileVersion = 2;
 constexpr int kLevels = 3;
 constexpr int kBlockCells = 8;  ///< cells along the side of a block
 constexpr int kCellsPerBlock = kBlockCells * kBlockCells * kBlockCells;

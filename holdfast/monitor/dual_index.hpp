@@ -40,8 +40,7 @@ struct DualIndexConfig {
           FieldDoc{"one scan with a residual above so many thresholds is an anomaly", 1.0, 1e6});
     visit("jump_m", self.jump_m,
           FieldDoc{"d_th: motion between two scans that is a jump", 1e-3, 1000.0});
-    visit("jump_deg", self.jump_deg,
-          FieldDoc{"likewise of the rotation", 1e-3, 180.0});
+    visit("jump_deg", self.jump_deg, FieldDoc{"likewise of the rotation", 1e-3, 180.0});
     visit("jump_from", self.jump_from,
           FieldDoc{"what motion is measured as: T_k T_k-1^-1, which has a lever arm about the "
                    "map's origin (printed); T_k-1^-1 T_k (body); or the way from the predicted to "
@@ -54,10 +53,10 @@ struct DualIndexConfig {
 
 /// What the detector looks at after a scan.
 struct DualIndexInput {
-  SE3 T_map_body;                          ///< found
-  SE3 T_map_predicted;                     ///< what motion alone would have given
-  std::optional<double> mean_residual_m;   ///< of absolute values; none: nothing was matched
-  bool too_few_matches = false;            ///< N_E or N_F below their minimum (4.1.1)
+  SE3 T_map_body;                         ///< found
+  SE3 T_map_predicted;                    ///< what motion alone would have given
+  std::optional<double> mean_residual_m;  ///< of absolute values; none: nothing was matched
+  bool too_few_matches = false;           ///< N_E or N_F below their minimum (4.1.1)
 };
 
 /// What it says, with its evidence.
@@ -67,7 +66,7 @@ struct DualIndexVerdict {
   double jump_rad = 0;
   bool candidate = false;  ///< residual above the threshold, or too few matches
   bool jumped = false;
-  bool anomaly = false;    ///< confirmed
+  bool anomaly = false;  ///< confirmed
 };
 
 /// The article's detector (3.4.1 and 4.1.1): a scan whose mean residual exceeds the mean of the

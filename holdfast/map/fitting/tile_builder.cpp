@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "holdfast/map/fitting/adopted_planes.hpp"
+#include "holdfast/map/fitting/closed_planes.hpp"
 #include "holdfast/map/fitting/surface_grid.hpp"
 
 namespace holdfast::map {
@@ -172,6 +173,7 @@ SurfaceGrid fit_level(const TilePoints& points, double cell_m, int level, const 
   line_fit.planes = false;
   if (!points.shared) fit_all(edges, line_fit);
   drop_ghosts(result, surfaces, fitted);
+  mark_closed_planes(planes, options, fitted, result, surfaces);
   adopt_planes(planes, options, fitted, result, surfaces);
   return result;
 }
