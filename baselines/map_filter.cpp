@@ -141,6 +141,7 @@ bool MapFilter::predict(TimeNs to, StepReport& report) {
   }
   propagate(state_, segment_, map_.info().gravity_map, setup_.imu);
   if (rest_.holds(segment_)) filter::Rest::correct(state_);
+  report.T_map_predicted = state_.T_map_body;
   return true;
 }
 

@@ -58,6 +58,13 @@ struct StageTimes {
   }
 };
 
+/// What one witness says of the pose.
+struct Evidence {
+  std::string_view witness;  ///< "agreeing", "through", "unmapped", "way", "break", ...
+  double log_ratio = 0;      ///< ln of how much more likely it is at a wrong pose; > 0: against it
+  std::string text;          ///< in a few words, with figures
+};
+
 /// What came of one scan.
 struct StepReport {
   TimeNs stamp = 0;      ///< time of the scan's first point
@@ -65,7 +72,10 @@ struct StepReport {
   State state = State::kInitializing;
   std::string reason;              ///< why this state, in a few words; empty for plain TRACKING
   SE3 T_map_body;                  ///< at pose_time; meaningful where claims_pose(state)
+  SE3 T_map_predicted;             ///< what motion alone would have given
   double p_wrong = -1;             ///< probability that the pose is wrong; < 0: not estimated
+  bool alarm = false;              ///< the monitor holds the pose for suspect or lost
+  std::vector<Evidence> evidence;  ///< while it does: all witnesses, the strongest first
   int matches = 0;                 ///< points paired with a surface of the map
   double inlier_share = 0;         ///< share of the selected points that agree with the map
   double mean_abs_residual_m = 0;  ///< mean distance of the agreeing points to their surfaces

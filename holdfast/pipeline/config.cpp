@@ -17,6 +17,9 @@ std::vector<io::FieldRef> fields_of(Config& config) {
   io::collect_fields("graph", config.graph, fields);
   io::collect_fields("odometry", config.odometry, fields);
   io::collect_fields("odometry.local_map", config.local_map, fields);
+  io::collect_fields("monitor", config.monitor, fields);
+  io::collect_fields("monitor.belief", config.monitor.belief, fields);
+  io::collect_fields("monitor.dual_index", config.dual_index, fields);
   return fields;
 }
 

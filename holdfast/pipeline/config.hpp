@@ -8,6 +8,8 @@
 #include "holdfast/estimator/smoother_options.hpp"
 #include "holdfast/features/feature_config.hpp"
 #include "holdfast/io/config_io.hpp"
+#include "holdfast/monitor/dual_index.hpp"
+#include "holdfast/monitor/monitor_config.hpp"
 #include "holdfast/odometry/odometry_config.hpp"
 #include "holdfast/pipeline/methods/graph_localizer.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
@@ -61,6 +63,8 @@ struct Config {
   GraphConfig graph;
   odometry::OdometryConfig odometry;
   odometry::LocalMapConfig local_map;
+  monitor::MonitorConfig monitor;
+  monitor::DualIndexConfig dual_index;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "holdfast/pipeline/methods/dual_index_localizer.hpp"
 #include "holdfast/pipeline/methods/feature_selection.hpp"
 #include "holdfast/pipeline/methods/graph_localizer.hpp"
 #include "holdfast/pipeline/methods/map_filter_method.hpp"
@@ -32,9 +33,9 @@ Result<std::unique_ptr<ScanLocalizer>> make_query_matching(const Config& config,
                                {start, feature_config(config), config.query_matching}, T_map_body);
 }
 
-std::unique_ptr<ScanLocalizer> make_method(const Config& config, map::PriorMap map,
-                                           const baselines::MapFilter::Setup& start,
-                                           const SE3& T_map_body) {
+std::unique_ptr<ScanLocalizer> make_matching(const Config& config, map::PriorMap map,
+                                             const baselines::MapFilter::Setup& start,
+                                             const SE3& T_map_body) {
   if (config.method == "map_filter") {
     return std::make_unique<MapFilterMethod>(std::move(map), start, T_map_body);
   }
@@ -45,7 +46,19 @@ std::unique_ptr<ScanLocalizer> make_method(const Config& config, map::PriorMap m
   setup.graph = config.graph;
   setup.odometry = odometry_setup(config, start.threads);
   setup.odometry.odometry.max_points = config.graph.odometry_points;
+  if (config.monitor.method == "evidence") setup.monitor = config.monitor;
   return std::make_unique<GraphLocalizer>(std::move(map), setup, T_map_body);
+}
+
+Result<std::unique_ptr<ScanLocalizer>> make_method(const Config& config, map::PriorMap map,
+                                                   int threads, const SE3& T_map_body) {
+  const baselines::MapFilter::Setup start = filter_setup(config, threads);
+  if (config.fit_at_query) return make_query_matching(config, std::move(map), start, T_map_body);
+  auto method = make_matching(config, std::move(map), start, T_map_body);
+  if (config.features == "off") return method;
+  method = std::make_unique<FeatureSelection>(std::move(method), feature_config(config),
+                                              config.lidar.range_sigma_m);
+  return method;
 }
 
 }  // namespace
@@ -62,18 +75,12 @@ Result<Localizer> Localizer::create(const Config& config, map::PriorMap map,
   if (const auto focused = map.focus(T_map_body->translation, kStartRadiusM); !focused) {
     return focused.error();
   }
-  const baselines::MapFilter::Setup start = filter_setup(config, threads);
-  if (config.fit_at_query) {
-    auto method = make_query_matching(config, std::move(map), start, *T_map_body);
-    if (!method) return method.error();
-    return Localizer(std::move(*method));
+  auto method = make_method(config, std::move(map), threads, *T_map_body);
+  if (!method) return method.error();
+  if (config.monitor.method == "dual_index") {
+    return Localizer(std::make_unique<DualIndexLocalizer>(std::move(*method), config.dual_index));
   }
-  auto method = make_method(config, std::move(map), start, *T_map_body);
-  if (config.features != "off") {
-    method = std::make_unique<FeatureSelection>(std::move(method), feature_config(config),
-                                                config.lidar.range_sigma_m);
-  }
-  return Localizer(std::move(method));
+  return Localizer(std::move(*method));
 }
 
 void Localizer::add_imu(const ImuSample& sample) { method_->add_imu(sample); }

@@ -47,6 +47,7 @@ GraphLocalizer::GraphLocalizer(map::PriorMap map, const Setup& setup, const SE3&
       smoother_(setup.smoother) {
   scan_.T_body_lidar = setup.start.T_body_lidar;
   if (setup.graph.odometry == "on") witness_ = std::make_unique<OdometryWitness>(setup.odometry);
+  if (setup.monitor) health_.emplace(*setup.monitor);
 }
 
 void GraphLocalizer::add_imu(const ImuSample& sample) {
@@ -130,6 +131,7 @@ void GraphLocalizer::step(const Scan& scan, StageClock& clock, StepReport& repor
   const NodeState before = smoother_.newest();
   if (!predict(scan.end_time, report)) return;
   const NodeState predicted = smoother_.newest();
+  report.T_map_predicted = predicted.T_map_body;
   clock.book(Stage::kPredict);
   Match found = match(predicted, clock);
   allow_for_bias_jump(found, clock);
@@ -140,8 +142,8 @@ void GraphLocalizer::step(const Scan& scan, StageClock& clock, StepReport& repor
   if (found.usable) demand_.learn(found.equations, scan_.selected.size(), setup_.start.selection);
   estimate_map_error(found);
   describe(found, report);
-  compare_with_odometry(found, report.pose_covariance);
   judge(found, report);
+  ask_monitor(report);
   imu_.drop_before(scan.end_time - kImuMemory);
 }
 
@@ -333,12 +335,6 @@ double GraphLocalizer::mapped_share(const SE3& T_map_body) const {
   return asked > 0 ? static_cast<double>(mapped) / asked : 1.0;
 }
 
-void GraphLocalizer::compare_with_odometry(const Match& match, const filter::Matrix6d& covariance) {
-  if (!witness_ || !match.usable) return;
-  witness_->compare({smoother_.newest().T_map_body, covariance},
-                    match.equations.weight / static_cast<double>(scan_.selected.size()));
-}
-
 /// The map's own error is the same for all scans of a place. It does not average out as their noise
 /// does, so that it stands beside what the graph knows given the map.
 void GraphLocalizer::estimate_map_error(const Match& match) {
@@ -374,11 +370,11 @@ void GraphLocalizer::describe(const Match& match, StepReport& report) const {
   }
 }
 
-void GraphLocalizer::judge(const Match& match, StepReport& report) const {
-  if (witness_ && witness_->contradicts_map()) {
-    report.state = State::kLost;
-    report.reason = "the map and the odometry disagree beyond doubt";
-  } else if (report.sigma_trans_m > setup_.start.filter.lost_sigma_m) {
+void GraphLocalizer::judge(const Match& match, StepReport& report) {
+  if (witness_ && match.usable) {
+    witness_->compare({report.T_map_body, report.pose_covariance});
+  }
+  if (report.sigma_trans_m > setup_.start.filter.lost_sigma_m) {
     report.state = State::kLost;
     report.reason = "too long without a scan that fits the map";
   } else if (!match.usable && match.mapped_share < kHardlyMapped) {
@@ -393,6 +389,14 @@ void GraphLocalizer::judge(const Match& match, StepReport& report) const {
   } else {
     report.state = State::kTracking;
   }
+}
+
+void GraphLocalizer::ask_monitor(StepReport& report) {
+  if (!health_) return;
+  if (scan_.selected.empty()) work_.points.resize(0);
+  health_->judge({*map_, work_.points, scan_.T_body_lidar.translation, witness_ && witness_->broke(),
+                  witness_ ? witness_->way_squared_distance() : std::nullopt},
+                 report);
 }
 
 }  // namespace holdfast::pipeline

@@ -10,6 +10,7 @@
 #include "holdfast/filter/matching/patch_error.hpp"
 #include "holdfast/filter/matching/point_demand.hpp"
 #include "holdfast/filter/matching/scan_match.hpp"
+#include "holdfast/pipeline/methods/map_health.hpp"
 #include "holdfast/pipeline/methods/odometry_witness.hpp"
 #include "holdfast/pipeline/methods/scan_localizer.hpp"
 
@@ -61,6 +62,7 @@ class GraphLocalizer : public ScanLocalizer {
     estimator::SmootherConfig smoother;
     GraphConfig graph;
     odometry::Odometry::Setup odometry;
+    std::optional<monitor::MonitorConfig> monitor;  ///< none: nobody asks whether the pose is right
   };
 
   /// `T_map_body` is the pose at the end of the first scan, to within Setup::start.
@@ -105,8 +107,8 @@ class GraphLocalizer : public ScanLocalizer {
   void estimate_map_error(const Match& match);
   filter::Matrix6d pose_covariance() const;
   void describe(const Match& match, StepReport& report) const;
-  void compare_with_odometry(const Match& match, const filter::Matrix6d& covariance);
-  void judge(const Match& match, StepReport& report) const;
+  void judge(const Match& match, StepReport& report);
+  void ask_monitor(StepReport& report);
 
   Setup setup_;
   std::unique_ptr<baselines::MapFilter> start_;  ///< until it has found the pose
@@ -122,6 +124,7 @@ class GraphLocalizer : public ScanLocalizer {
   std::vector<Eigen::Vector3d> few_told_;                  ///< directions, likewise
   estimator::FixedLagSmoother smoother_;
   std::unique_ptr<OdometryWitness> witness_;        ///< none: switched off
+  std::optional<MapHealth> health_;                 ///< none: switched off
   std::optional<estimator::BetweenFactor> motion_;  ///< since the node before, by the odometry
   double last_mapped_share_ = 1;
   std::uint64_t scan_number_ = 0;

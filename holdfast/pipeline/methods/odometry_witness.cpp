@@ -1,7 +1,7 @@
 #include "holdfast/pipeline/methods/odometry_witness.hpp"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
+#include <utility>
 
 namespace holdfast::pipeline {
 namespace {
@@ -13,15 +13,11 @@ using estimator::Vector6d;
 constexpr double kSharedImu = 2.0;
 constexpr double kHuberSigmas = 3.0;
 
-// Chi-square of 6 degrees of freedom that chance exceeds once in 10^9 scans, three years of them.
-constexpr double kBeyondDoubt = 53.0;
 // What the covariances leave out, one sigma: share of the way by which a poor scene misleads the
 // odometry, and what the models of map and world are off by.
 constexpr double kWayShare = 0.03;
 constexpr double kLeastM = 0.05;
 constexpr double kLeastRad = 0.01;
-constexpr double kPoor = 0.8;  // share of inliers, by the usual one, that speaks against a pose
-constexpr double kShareMemory = 0.05;
 
 /// Of a map pose, with the position in its own body frame.
 Matrix6d in_body(const MappedPose& pose) {
@@ -43,15 +39,19 @@ void OdometryWitness::add_scan(const Scan& scan) {
   const odometry::OdometryReport report = odometry_.add_scan(scan);
   now_ = scan.end_time;
   epoch_ = report.step.odom_epoch;
+  broke_ = report.broke;
+  way_squared_distance_.reset();
   if (!report.increment) {
     whole_ = false;
-    if (report.broke) break_time_ = now_;
-    if (!contradicts_) begin_.reset();
+    older_.reset();
+    newer_.reset();
     return;
   }
   corrected_ = corrected_ && report.corrected;
   since_node_.append(*report.increment);
-  since_begin_.append(*report.increment);
+  for (auto* stretch : {&older_, &newer_}) {
+    if (*stretch) (*stretch)->way.append(*report.increment);
+  }
 }
 
 std::optional<estimator::BetweenFactor> OdometryWitness::take_motion() {
@@ -65,47 +65,35 @@ std::optional<estimator::BetweenFactor> OdometryWitness::take_motion() {
 }
 
 /// How far the map's account of the way is from the odometry's, in terms of what both may be off.
-double OdometryWitness::squared_distance(const MappedPose& now) const {
-  const SE3 T_begin_now = begin_->T_map_body.inverse() * now.T_map_body;
-  const SE3 T_odom_map = since_begin_.T_begin_now.inverse() * T_begin_now;
+double OdometryWitness::squared_distance(const Stretch& stretch, const MappedPose& now) const {
+  const auto& [begin, t, way] = stretch;
+  const SE3 T_begin_now = begin.T_map_body.inverse() * now.T_map_body;
+  const SE3 T_odom_map = way.T_begin_now.inverse() * T_begin_now;
   Vector6d d;
   d << T_odom_map.translation, so3::log(T_odom_map.rotation);
   // The begin's error, seen at the end of the way, has a lever.
   Matrix6d lever = Matrix6d::Identity();
-  const Eigen::Matrix3d R = since_begin_.T_begin_now.rotation.toRotationMatrix();
+  const Eigen::Matrix3d R = way.T_begin_now.rotation.toRotationMatrix();
   lever.topLeftCorner<3, 3>() = R.transpose();
-  lever.topRightCorner<3, 3>() = -R.transpose() * so3::hat(since_begin_.T_begin_now.translation);
+  lever.topRightCorner<3, 3>() = -R.transpose() * so3::hat(way.T_begin_now.translation);
   lever.bottomRightCorner<3, 3>() = R.transpose();
   Matrix6d turned = Matrix6d::Identity();
   turned.topLeftCorner<3, 3>() = R.transpose();
-  Matrix6d S = lever * in_body(*begin_) * lever.transpose() + in_body(now) +
-               turned * since_begin_.covariance * turned.transpose();
-  const double way = kWayShare * since_begin_.length_m;
-  S.diagonal().head<3>().array() += way * way + kLeastM * kLeastM;
+  Matrix6d S = lever * in_body(begin) * lever.transpose() + in_body(now) +
+               turned * way.covariance * turned.transpose();
+  const double off = kWayShare * way.length_m;
+  S.diagonal().head<3>().array() += off * off + kLeastM * kLeastM;
   S.diagonal().tail<3>().array() += kLeastRad * kLeastRad;
   return d.dot(S.ldlt().solve(d));
 }
 
-void OdometryWitness::compare(const MappedPose& now, double inlier_share) {
-  judge(begin_ && squared_distance(now) > kBeyondDoubt, inlier_share);
-  if (begin_ && (contradicts_ || now_ < begin_time_ + kStretch)) return;
-  if (contradicts_) return;
-  begin_ = now;
-  begin_time_ = now_;
-  since_begin_ = {};
-}
-
-void OdometryWitness::judge(bool disagree, double inlier_share) {
-  const bool broke = now_ < break_time_ + kSecond;
-  const bool poor = inlier_share < kPoor * usual_share_;
-  if (!contradicts_) {
-    contradicts_ = poor && (disagree || broke);
-    explained_since_ = now_;
-    usual_share_ += (usual_share_ == 0 ? 1.0 : kShareMemory) * (inlier_share - usual_share_);
-  } else if (poor || disagree) {
-    explained_since_ = now_;
-  } else if (now_ >= explained_since_ + kSecond) {
-    contradicts_ = false;
+void OdometryWitness::compare(const MappedPose& now) {
+  if (older_) way_squared_distance_ = squared_distance(*older_, now);
+  if (older_ && now_ >= older_->t + kStretch) older_ = std::exchange(newer_, std::nullopt);
+  if (!older_) {
+    older_ = Stretch{now, now_, {}};
+  } else if (!newer_ && now_ >= older_->t + kStretch / 2) {
+    newer_ = Stretch{now, now_, {}};
   }
 }
 

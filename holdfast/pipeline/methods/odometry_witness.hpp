@@ -33,19 +33,21 @@ class OdometryWitness {
   /// used the readings of the same IMU.
   std::optional<estimator::BetweenFactor> take_motion();
 
-  /// A pose that the map tells now, with the share of the returns that agree with the map there.
-  /// The odometry may be wrong as well; the map's pose is held to be wrong where the odometry tells
-  /// another way since an earlier pose (up to kStretch ago), or says that the robot was carried,
-  /// and the scan agrees less with the map than before. That stays so until the map has explained
-  /// the scans of a second as well as ever, and the way too.
-  void compare(const MappedPose& now, double inlier_share);
+  /// A pose that the map tells now. Kept to be compared with later ones.
+  void compare(const MappedPose& now);
 
-  bool contradicts_map() const { return contradicts_; }
+  /// Squared Mahalanobis distance (6 degrees of freedom) between the way that the map's poses tell
+  /// over the last seconds (half to one kStretch) and the odometry's, at the last compare(); none
+  /// where the odometry broke since. Both may be off by a little more than their covariances say.
+  const std::optional<double>& way_squared_distance() const { return way_squared_distance_; }
+
+  /// Did the odometry say of the newest scan that the robot was carried?
+  bool broke() const { return broke_; }
 
   int epoch() const { return epoch_; }
 
  private:
-  static constexpr TimeNs kStretch = 2 * kSecond;
+  static constexpr TimeNs kStretch = 4 * kSecond;
 
   /// Motion that was composed of increments.
   struct Way {
@@ -56,22 +58,25 @@ class OdometryWitness {
     void append(const odometry::Increment& increment);
   };
 
-  double squared_distance(const MappedPose& now) const;
-  void judge(bool disagree, double inlier_share);
+  /// From a pose that the map told.
+  struct Stretch {
+    MappedPose begin;
+    TimeNs t = 0;
+    Way way;
+  };
+
+  double squared_distance(const Stretch& stretch, const MappedPose& now) const;
 
   odometry::Odometry odometry_;
   TimeNs now_ = 0;
   int epoch_ = 0;
+  bool broke_ = false;
   Way since_node_;
   bool corrected_ = true;  ///< all of it, by scans
   bool whole_ = false;     ///< no break in it
-  std::optional<MappedPose> begin_;
-  TimeNs begin_time_ = 0;
-  Way since_begin_;
-  TimeNs break_time_ = 0;
-  double usual_share_ = 0;  ///< of inliers, running mean
-  TimeNs explained_since_ = 0;
-  bool contradicts_ = false;
+  std::optional<Stretch> older_;
+  std::optional<Stretch> newer_;  ///< half a stretch later; takes the older one's place
+  std::optional<double> way_squared_distance_;
 };
 
 }  // namespace holdfast::pipeline

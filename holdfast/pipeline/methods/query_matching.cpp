@@ -64,6 +64,7 @@ void QueryMatching::step(const Scan& scan, StageClock& clock, StepReport& report
   }
   report.imu_held_ns = segment_.held_ns;
   filter::propagate(state_, segment_, gravity_map_, setup_.start.imu);
+  report.T_map_predicted = state_.T_map_body;
   clock.book(Stage::kPredict);
   extractor_.extract(scan, found_);
   clock.book(Stage::kSelect);

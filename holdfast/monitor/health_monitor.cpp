@@ -1,0 +1,47 @@
+#include "holdfast/monitor/health_monitor.hpp"
+
+namespace holdfast::monitor {
+namespace {
+
+constexpr double kSureToLearn = 0.01;  // p_wrong above which nothing is taken for usual
+
+}  // namespace
+
+Health HealthMonitor::judge(const HealthInput& input) {
+  Health health;
+  health.broke = input.odometry_broke;
+  const double seconds = before_ == 0 ? 0.0 : to_seconds(input.t - before_);
+  before_ = input.t;
+  belief_.pass(seconds, input.way_m, input.odometry_broke);
+  belief_.hear(hear(input, health));
+  health.p_wrong = belief_.p_wrong();
+  health.p_outside = belief_.probability(Hypothesis::kOutside);
+  health.p_hidden =
+      belief_.probability(Hypothesis::kChanged) + belief_.probability(Hypothesis::kCrowded);
+  if (input.looks && health.p_wrong < kSureToLearn) run_.learn(*input.looks);
+  health.verdict = last_ = verdict(health.p_wrong);
+  return health;
+}
+
+LogLikelihoods HealthMonitor::hear(const HealthInput& input, Health& health) {
+  Testimony testimony{};
+  health.usual = input.usual.value_or(run_.looks());
+  health.seen = input.looks;
+  if (input.looks) testify(*input.looks, health.usual, testimony);
+  if (input.way_squared_distance) testify_way(*input.way_squared_distance, testimony);
+  LogLikelihoods all{};
+  for (std::size_t w = 0; w < testimony.size(); ++w) {
+    health.log_ratio[w] = belief_.log_ratio(testimony[w]);
+    for (std::size_t h = 0; h < kHypotheses; ++h) all[h] += testimony[w][h];
+  }
+  return all;
+}
+
+/// A pose that is lost is not found by a little less doubt.
+Verdict HealthMonitor::verdict(double p_wrong) const {
+  if (p_wrong >= config_.lost_p) return Verdict::kLost;
+  if (p_wrong < config_.suspect_p) return Verdict::kHealthy;
+  return last_ == Verdict::kLost ? Verdict::kLost : Verdict::kSuspect;
+}
+
+}  // namespace holdfast::monitor

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "holdfast/core/step_report.hpp"
+#include "holdfast/map/prior_map.hpp"
+#include "holdfast/monitor/health_monitor.hpp"
+#include "holdfast/registration/correspondences.hpp"
+
+namespace holdfast::pipeline {
+
+/// What the monitor needs beside the report of a step.
+struct SceneView {
+  const map::PriorMap& map;
+  const registration::BodyPoints& points;  ///< of the scan, in the body frame; empty: no returns
+  Eigen::Vector3d p_body_lidar;
+  bool odometry_broke = false;
+  std::optional<double> way_squared_distance;
+};
+
+/// The bridge from a localizer with a map to the monitor: follows some of the scan's rays through
+/// the map, asks, and writes the answer into the report of the step.
+class MapHealth {
+ public:
+  explicit MapHealth(const monitor::MonitorConfig& config) : config_(config), monitor_(config) {}
+
+  /// `report` tells the pose, its covariance, the share that agrees, and the state without the
+  /// monitor's word. Takes about 0.2 ms.
+  void judge(const SceneView& scene, StepReport& report);
+
+ private:
+  std::optional<monitor::Looks> look(const SceneView& scene, const StepReport& report);
+
+  monitor::MonitorConfig config_;
+  monitor::HealthMonitor monitor_;
+  std::vector<monitor::SightLine> lines_;
+  std::optional<SE3> before_;
+};
+
+}  // namespace holdfast::pipeline
