@@ -37,6 +37,12 @@ Probabilities weighed(const Probabilities& p, const LogLikelihoods& testimony, d
   return q;
 }
 
+/// Of a probability, after evidence with this log ratio for it.
+double weighed(double probability, double log_ratio) {
+  const double odds = probability / (1.0 - probability) * std::exp(log_ratio);
+  return odds / (1.0 + odds);
+}
+
 double sum_of_wrong(const Probabilities& p) {
   double sum = 0;
   for (std::size_t h = 0; h < kHypotheses; ++h) sum += is_wrong(h) ? p[h] : 0.0;
@@ -48,9 +54,11 @@ double sum_of_wrong(const Probabilities& p) {
 Belief::Belief(const BeliefConfig& config)
     : config_(config), history_(with_wrong(config.wrong_at_start)), now_(history_) {}
 
-void Belief::pass(double seconds, double way_m, bool broke) {
+void Belief::pass(double seconds, double way_m, const Onset& onset) {
   const double wrong = sum_of_wrong(history_);
-  const double becomes = broke ? config_.wrong_after_break : in(config_.wrong_per_s, seconds);
+  const double expected =
+      onset.odometry_broke ? config_.wrong_after_break : in(config_.wrong_per_s, seconds);
+  const double becomes = weighed(expected, onset.log_ratio);
   const double found = in(config_.found_again_per_s, seconds);
   const double other = in(kOtherKindPerS, seconds);
   for (std::size_t h = 0; h < kHypotheses; ++h) {

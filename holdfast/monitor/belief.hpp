@@ -2,13 +2,14 @@
 
 #include "holdfast/core/fields.hpp"
 #include "holdfast/monitor/hypotheses.hpp"
+#include "holdfast/monitor/onset.hpp"
 
 namespace holdfast::monitor {
 
 /// How the truth changes by itself, and how soon what is seen is news. Probabilities a second.
 struct BeliefConfig {
   double wrong_at_start = 0.05;
-  double wrong_per_s = 1e-5;
+  double wrong_per_s = 1e-4;
   double wrong_after_break = 0.5;
   double found_again_per_s = 3e-3;
   double news_after_m = 1.0;
@@ -19,8 +20,7 @@ struct BeliefConfig {
     visit("wrong_at_start", self.wrong_at_start,
           FieldDoc{"probability that the pose at the start is of another place", 1e-6, 0.5});
     visit("wrong_per_s", self.wrong_per_s,
-          FieldDoc{"probability that a pose becomes wrong in a second without any sign of it (1e-5: "
-                   "once in 28 h)",
+          FieldDoc{"probability that a pose becomes wrong in a second (1e-4: once in three hours)",
                    1e-12, 0.1});
     visit("wrong_after_break", self.wrong_after_break,
           FieldDoc{"probability that the robot was carried, where the odometry says so", 1e-6, 0.99});
@@ -43,8 +43,8 @@ class Belief {
  public:
   explicit Belief(const BeliefConfig& config);
 
-  /// Time passes, and way; `broke`: the odometry says that the robot was carried.
-  void pass(double seconds, double way_m, bool broke);
+  /// Time passes, and way, with what may be a sign that the robot was carried.
+  void pass(double seconds, double way_m, const Onset& onset);
   /// What the newest scan says.
   void hear(const LogLikelihoods& testimony);
 

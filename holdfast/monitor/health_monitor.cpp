@@ -4,15 +4,20 @@ namespace holdfast::monitor {
 namespace {
 
 constexpr double kSureToLearn = 0.01;  // p_wrong above which nothing is taken for usual
+constexpr TimeNs kOnsetMemory = 3 * kSecond;
 
 }  // namespace
 
 Health HealthMonitor::judge(const HealthInput& input) {
   Health health;
-  health.broke = input.odometry_broke;
   const double seconds = before_ == 0 ? 0.0 : to_seconds(input.t - before_);
   before_ = input.t;
-  belief_.pass(seconds, input.way_m, input.odometry_broke);
+  const Onset onset = watch_.watch(
+      input.t, input.looks ? std::optional(input.looks->agreeing) : std::nullopt,
+      input.odometry_broke);
+  remember(onset, input.t);
+  health.onset = onset_;
+  belief_.pass(seconds, input.way_m, onset);
   belief_.hear(hear(input, health));
   health.p_wrong = belief_.p_wrong();
   health.p_outside = belief_.probability(Hypothesis::kOutside);
@@ -21,6 +26,15 @@ Health HealthMonitor::judge(const HealthInput& input) {
   if (input.looks && health.p_wrong < kSureToLearn) run_.learn(*input.looks);
   health.verdict = last_ = verdict(health.p_wrong);
   return health;
+}
+
+void HealthMonitor::remember(const Onset& onset, TimeNs t) {
+  const bool stronger = onset.odometry_broke != onset_.odometry_broke
+                            ? onset.odometry_broke
+                            : onset.log_ratio >= onset_.log_ratio;
+  if (!stronger && t < onset_time_ + kOnsetMemory) return;
+  onset_ = onset;
+  onset_time_ = t;
 }
 
 LogLikelihoods HealthMonitor::hear(const HealthInput& input, Health& health) {

@@ -26,7 +26,7 @@ struct Health {
   double p_wrong = 0;     ///< that the pose is of another place
   double p_outside = 0;   ///< that the pose is right, and the map has little of what is here
   double p_hidden = 0;    ///< that the pose is right, and people or changes hide the map
-  bool broke = false;     ///< the odometry broke with this scan
+  Onset onset;            ///< the strongest of the last seconds
   UsualLooks usual;       ///< what the scan was held against
   std::optional<Looks> seen;
   /// Of each witness, how much more likely its words are at a wrong pose than at a right one (its
@@ -45,11 +45,15 @@ class HealthMonitor {
   Health judge(const HealthInput& input);
 
  private:
+  void remember(const Onset& onset, TimeNs t);
   LogLikelihoods hear(const HealthInput& input, Health& health);
   Verdict verdict(double p_wrong) const;
 
   MonitorConfig config_;
   Belief belief_;
+  OnsetWatch watch_;
+  Onset onset_;  ///< the strongest of late
+  TimeNs onset_time_ = 0;
   RunningUsual run_;
   TimeNs before_ = 0;
   Verdict last_ = Verdict::kHealthy;

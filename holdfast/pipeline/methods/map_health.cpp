@@ -14,6 +14,7 @@ using monitor::Verdict;
 
 // Beyond these a claim misleads.
 constexpr double kWrongM = 0.5;
+constexpr double kBreakLogRatio = 9.0;  // even chances, where they were one in ten thousand
 constexpr double kWrongRad = 5.0 * std::numbers::pi / 180.0;
 
 /// Probability that an error with this sigma, in its worst direction, is greater than `limit`.
@@ -49,6 +50,14 @@ std::string words(monitor::Witness witness, const Health& health) {
 
 std::vector<Evidence> evidence(const Health& health) {
   std::vector<Evidence> all;
+  if (health.onset.log_ratio > 0) {
+    all.push_back({"sudden", health.onset.log_ratio,
+                   fmt::format("{:.0f} % fewer returns agree with the map than two scans before",
+                               100.0 * health.onset.drop)});
+  }
+  if (health.onset.odometry_broke) {
+    all.push_back({"break", kBreakLogRatio, "the odometry says that the robot was carried"});
+  }
   for (std::size_t w = 0; w < monitor::kWitnessNames.size(); ++w) {
     if (health.log_ratio[w] == 0) continue;
     all.push_back({monitor::kWitnessNames[w], health.log_ratio[w],
@@ -61,9 +70,7 @@ std::vector<Evidence> evidence(const Health& health) {
 
 std::string reason(const Health& health, const std::vector<Evidence>& evidence) {
   const char* what = health.verdict == Verdict::kLost ? "the pose is wrong" : "the pose may be wrong";
-  if (evidence.empty() || evidence.front().log_ratio <= 0) {
-    return fmt::format("{}: the robot seems to have been carried", what);
-  }
+  if (evidence.empty()) return what;
   return fmt::format("{}: {}", what, evidence.front().text);
 }
 
