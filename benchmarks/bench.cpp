@@ -14,7 +14,7 @@
 namespace holdfast::benchmarks {
 namespace {
 
-constexpr std::array<BenchInfo, 10> kBenches = {{
+constexpr std::array<BenchInfo, 11> kBenches = {{
     {"step",
      "time of a step, beside a k-d-tree registration and plain reading of the log",
      {1, 1},
@@ -31,6 +31,13 @@ constexpr std::array<BenchInfo, 10> kBenches = {{
      {1, 3},
      60,
      measure_scenarios,
+     true,
+     true},
+    {"detection",
+     "missed events, time to alarm and false alarms of the monitor and of the article's detector",
+     {1, 10},
+     30,
+     measure_detection,
      true,
      true},
     {"import",

@@ -21,6 +21,13 @@ Result<BenchReport> measure_accuracy(const BenchOptions& options);
 /// done again. `threads` places are driven through at a time, each on one thread.
 Result<BenchReport> measure_scenarios(const BenchOptions& options);
 
+/// The monitor as a detector of wrong poses, beside the article's (Tables 7 and 8): drives in which
+/// nothing happens, in which something happens that is no reason for an alarm, kidnaps and wrong
+/// starts, over scenarios and seeds. Missed events, time to alarm, false alarms, what each
+/// threshold would give, and whether the probability means something. `threads` places are driven
+/// through at a time, each on one thread.
+Result<BenchReport> measure_detection(const BenchOptions& options);
+
 /// Making a map of 2 million points and localizing in it, each in a process of its own, so that the
 /// peak memory is its own. `threads` fit the surfaces.
 Result<BenchReport> measure_import(const BenchOptions& options);

@@ -3,7 +3,6 @@
 namespace holdfast::monitor {
 namespace {
 
-constexpr double kSureToLearn = 0.01;  // p_wrong above which nothing is taken for usual
 constexpr TimeNs kOnsetMemory = 3 * kSecond;
 
 }  // namespace
@@ -23,8 +22,8 @@ Health HealthMonitor::judge(const HealthInput& input) {
   health.p_outside = belief_.probability(Hypothesis::kOutside);
   health.p_hidden =
       belief_.probability(Hypothesis::kChanged) + belief_.probability(Hypothesis::kCrowded);
-  if (input.looks && health.p_wrong < kSureToLearn) run_.learn(*input.looks);
   health.verdict = last_ = verdict(health.p_wrong);
+  if (input.looks && last_ == Verdict::kHealthy) run_.learn(*input.looks);
   return health;
 }
 

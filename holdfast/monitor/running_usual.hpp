@@ -14,7 +14,7 @@ class RunningUsual {
   void learn(const Looks& seen);
 
  private:
-  UsualLooks usual_{{0.75, 0.02, 0.01}, kWorthUnseen};
+  UsualLooks usual_{{0.7, 0.06, 0.02}, kWorthUnseen};
   static constexpr double kWorthUnseen = 4;
 };
 
