@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <optional>
 
 #include "apps/commands.hpp"
 #include "apps/progress_bar.hpp"
@@ -11,6 +13,8 @@
 #include "holdfast/map/map_builder.hpp"
 #include "holdfast/map/prior_map.hpp"
 #include "holdfast/pipeline/accumulate.hpp"
+#include "holdfast/places/place_maker.hpp"
+#include "holdfast/places/places.hpp"
 
 namespace holdfast::apps {
 namespace {
@@ -34,6 +38,23 @@ void print_info(const map::MapInfo& info, const std::string& path) {
              map::kTileSizeM, static_cast<double>(bytes) * 1e-6);
 }
 
+void print_places(const std::string& path) {
+  const auto places = value_or_fail(places::Places::open(path));
+  const auto info = value_or_fail(map::read_map_info(path));
+  if (!info.places) {
+    fmt::print("places    none: import the map again to make them\n");
+    return;
+  }
+  const auto all = places.all().size();
+  const auto poor = std::count_if(
+      places.all().begin(), places.all().end(),
+      [](const places::Place& place) { return place.weakest_sigma_m > places::kPoorSigmaM; });
+  fmt::print("places    {}, {:.1f} kB; {:.1f} % of them poorly localizable (> {:.0f} mm)\n", all,
+             1e-3 * static_cast<double>(info.places->bytes),
+             all == 0 ? 0.0 : 100.0 * static_cast<double>(poor) / static_cast<double>(all),
+             1e3 * places::kPoorSigmaM);
+}
+
 struct ImportArguments {
   std::string cloud, edges, planes, out;
   int threads = 2;
@@ -55,16 +76,22 @@ map::MapSource read_source(const ImportArguments& args) {
 void make_map(map::MapSource source, const std::string& out, int threads) {
   const auto begin = std::chrono::steady_clock::now();
   WorkerPool pool(threads);
-  map::MapInfo info;
-  {
-    ProgressBar bar("fitting surfaces");
-    info = value_or_fail(
-        map::build_map(std::move(source), out, pool, [&](std::size_t done, std::size_t all) {
-          bar.update(static_cast<double>(done) / static_cast<double>(all),
-                     fmt::format("{} of {} tiles", done, all));
-        }));
-  }
+  ProgressBar fitting("fitting surfaces");
+  std::optional<ProgressBar> looking;
+  const auto update = [](ProgressBar& bar, std::size_t done, std::size_t all, const char* what) {
+    bar.update(static_cast<double>(done) / static_cast<double>(all),
+               fmt::format("{} of {} {}", done, all, what));
+  };
+  const auto info = value_or_fail(places::build_map(
+      std::move(source), out, pool,
+      [&](std::size_t done, std::size_t all) { update(fitting, done, all, "tiles"); },
+      [&](std::size_t done, std::size_t all) {
+        if (!looking) looking.emplace("places");
+        update(*looking, done, all, "viewpoints");
+      }));
+  looking.reset();
   print_info(info, out);
+  print_places(out);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   fmt::print("made in   {:.2f} s\n", elapsed.count());
 }
@@ -135,6 +162,7 @@ void add_info(CLI::App& map) {
     const auto info = value_or_fail(map::read_map_info(*path));
     value_or_fail(map::PriorMap::verify(*path, info));
     print_info(info, *path);
+    print_places(*path);
   });
 }
 

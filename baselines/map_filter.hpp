@@ -74,6 +74,8 @@ class MapFilter {
   /// Is the robot held at rest, until its IMU feels a start?
   bool rests() const { return rest_.is_assumed(); }
   const map::PriorMap& map() const { return map_; }
+  /// Of the newest scan, in the body frame at its end.
+  const registration::BodyPoints& points() const { return work_.points; }
   /// The map, for whoever goes on from here.
   map::PriorMap take_map() && { return std::move(map_); }
   const preprocess::ImuBuffer& imu() const { return imu_; }

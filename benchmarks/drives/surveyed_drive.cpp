@@ -2,7 +2,7 @@
 
 #include "holdfast/io/atomic_output.hpp"
 #include "holdfast/io/bag_writer.hpp"
-#include "holdfast/map/map_builder.hpp"
+#include "holdfast/places/place_maker.hpp"
 #include "simulation/log_output.hpp"
 
 namespace holdfast::benchmarks {
@@ -41,7 +41,7 @@ Result<SurveyedDrive> survey_drive(const DriveSpec& spec, const std::filesystem:
   drive.initial_pose = drive.simulation->initial_pose();
   map::MapSource source{drive.simulation->survey_map(), std::nullopt, spec.scenario};
   WorkerPool pool(spec.threads);
-  if (auto info = map::build_map(std::move(source), drive.map_dir, pool); !info) {
+  if (auto info = places::build_map(std::move(source), drive.map_dir, pool); !info) {
     return info.error();
   }
   return drive;

@@ -273,6 +273,16 @@ Status collect(const Job& job, const std::vector<TileResult>& results, MapInfo& 
   return Done{};
 }
 
+Status make_all_tiles(const MapSource& source, const std::filesystem::path& dir, WorkerPool& pool,
+                      const BuildProgress& progress, MapInfo& info) {
+  const Job job = plan(source, info, dir);
+  return collect(job, make_tiles(job, pool, progress), info);
+}
+
+Status write_info(const std::filesystem::path& dir, const MapInfo& info) {
+  return io::write_file_atomically(dir / kMapFileName, format_map_info(info));
+}
+
 }  // namespace
 
 double estimate_spacing(const io::PointCloud& cloud) {
@@ -299,7 +309,7 @@ double estimate_spacing(const io::PointCloud& cloud) {
 }
 
 Result<MapInfo> build_map(MapSource source, const std::filesystem::path& path, WorkerPool& pool,
-                          const BuildProgress& progress) {
+                          const BuildProgress& progress, const MapFinish& finish) {
   constexpr std::size_t kLeastPoints = 100;
   if (source.cloud.points.size() < kLeastPoints) {
     return Error{fmt::format("{}: {} usable points, at least {} expected", source.name,
@@ -317,12 +327,15 @@ Result<MapInfo> build_map(MapSource source, const std::filesystem::path& path, W
   set_bounds(source, info);
   info.origin = origin_for(info);
   info.spacing_m = estimate_spacing(source.cloud);
-  const Job job = plan(source, info, folder->staging());
-  const auto results = make_tiles(job, pool, progress);
-  if (auto status = collect(job, results, info); !status) return status.error();
-  const auto written =
-      io::write_file_atomically(folder->staging() / kMapFileName, format_map_info(info));
-  if (!written) return written.error();
+  if (auto made = make_all_tiles(source, folder->staging(), pool, progress, info); !made) {
+    return made.error();
+  }
+  source = {};  // its memory is needed no more
+  if (auto written = write_info(folder->staging(), info); !written) return written.error();
+  if (finish) {
+    if (auto finished = finish(folder->staging(), info); !finished) return finished.error();
+    if (auto written = write_info(folder->staging(), info); !written) return written.error();
+  }
   if (auto committed = folder->commit(); !committed) return committed.error();
   return info;
 }

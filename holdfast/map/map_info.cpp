@@ -32,6 +32,15 @@ TileInfo tile_of(const std::string& line) {
   return tile;
 }
 
+/// "bytes checksum"
+FileInfo file_of(const std::string& line) {
+  unsigned long long bytes = 0, sum = 0;
+  if (std::sscanf(line.c_str(), "%llu %llx", &bytes, &sum) != 2) {
+    throw YAML::Exception(YAML::Mark::null_mark(), "not bytes and checksum of places: " + line);
+  }
+  return {bytes, sum};
+}
+
 void read_levels(const YAML::Node& node, MapInfo& info) {
   for (int i = 0; i < kLevels; ++i) {
     info.levels[i] = {node[i]["cell_m"].as<double>(), node[i]["planes"].as<std::uint64_t>(),
@@ -51,6 +60,7 @@ MapInfo parse(const YAML::Node& node) {
   info.spacing_m = node["spacing_m"].as<double>();
   info.noise_m = node["noise_m"].as<double>();
   read_levels(node["levels"], info);
+  if (node["places"]) info.places = file_of(node["places"].as<std::string>());
   for (const auto& tile : node["tiles"]) info.tiles.push_back(tile_of(tile.as<std::string>()));
   return info;
 }
@@ -92,6 +102,10 @@ std::string format_map_info(const MapInfo& info) {
   for (const auto& level : info.levels) {
     text += fmt::format("  - {{cell_m: {}, planes: {}, lines: {}}}\n", level.cell_m, level.planes,
                         level.lines);
+  }
+  if (info.places) {
+    text += fmt::format("places: {} {:016x}  # bytes checksum\n", info.places->bytes,
+                        info.places->checksum);
   }
   text += "tiles:  # ix iy bytes points surface_checksum point_checksum\n";
   for (const auto& t : info.tiles) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,12 @@ struct TileInfo {
   std::string stem() const;  ///< "tiles/+003_-012"
 };
 
+/// A file of the map that is not a tile's.
+struct FileInfo {
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;  ///< XXH3-64
+};
+
 struct LevelInfo {
   double cell_m = 0;
   std::uint64_t planes = 0;
@@ -44,7 +51,8 @@ struct MapInfo {
   double spacing_m = 0;  ///< typical distance between neighbouring points on a surface
   double noise_m = 0;    ///< typical RMS distance of points to their plane
   std::array<LevelInfo, kLevels> levels;
-  std::vector<TileInfo> tiles;  ///< by iy, then ix
+  std::optional<FileInfo> places;  ///< places.bin: what is usual where; none: made without
+  std::vector<TileInfo> tiles;     ///< by iy, then ix
 };
 
 /// Reads DIR/map.yaml. Errors name file and key; a newer format says which version is read here.

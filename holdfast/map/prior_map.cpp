@@ -4,33 +4,13 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <limits>
 
 #include "holdfast/map/checksum.hpp"
+#include "holdfast/map/map_files.hpp"
 
 namespace holdfast::map {
 namespace {
-
-Result<std::vector<std::byte>> read_checked(const std::filesystem::path& path, std::uint64_t bytes,
-                                            std::uint64_t sum) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) return Error{fmt::format("{}: cannot open", path.string())};
-  const auto size = static_cast<std::uint64_t>(file.tellg());
-  if (size != bytes) {
-    return Error{fmt::format("{}: {} bytes, map.yaml says {}", path.string(), size, bytes)};
-  }
-  std::vector<std::byte> content(size);
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(content.data()), static_cast<std::streamsize>(size));
-  if (!file || checksum(content.data(), size) != sum) {
-    return Error{
-        fmt::format("{}: content does not match its checksum in map.yaml: import the map "
-                    "again",
-                    path.string())};
-  }
-  return content;
-}
 
 Result<std::vector<std::byte>> read_point_file(const std::filesystem::path& dir,
                                                const TileInfo& tile) {
@@ -152,6 +132,9 @@ Status PriorMap::verify(const std::filesystem::path& dir, const MapInfo& info) {
     if (!surfaces) return surfaces.error();
     if (auto points = read_point_file(dir, tile); !points) return points.error();
   }
+  if (!info.places) return Done{};
+  auto places = read_checked(dir / kPlacesFileName, info.places->bytes, info.places->checksum);
+  if (!places) return places.error();
   return Done{};
 }
 

@@ -33,12 +33,9 @@ Result<std::unique_ptr<ScanLocalizer>> make_query_matching(const Config& config,
                                {start, feature_config(config), config.query_matching}, T_map_body);
 }
 
-std::unique_ptr<ScanLocalizer> make_matching(const Config& config, map::PriorMap map,
-                                             const baselines::MapFilter::Setup& start,
-                                             const SE3& T_map_body) {
-  if (config.method == "map_filter") {
-    return std::make_unique<MapFilterMethod>(std::move(map), start, T_map_body);
-  }
+Result<std::unique_ptr<ScanLocalizer>> make_graph(const Config& config, map::PriorMap map,
+                                                  const baselines::MapFilter::Setup& start,
+                                                  const SE3& T_map_body) {
   GraphLocalizer::Setup setup;
   setup.start = start;
   setup.smoother = config.estimator;
@@ -46,18 +43,34 @@ std::unique_ptr<ScanLocalizer> make_matching(const Config& config, map::PriorMap
   setup.graph = config.graph;
   setup.odometry = odometry_setup(config, start.threads);
   setup.odometry.odometry.max_points = config.graph.odometry_points;
-  if (config.monitor.method == "evidence") setup.monitor = config.monitor;
+  if (config.monitor.method == "evidence") {
+    auto places = places::Places::open(map.dir());
+    if (!places) return places.error();
+    setup.monitor = config.monitor;
+    setup.places = std::make_shared<const places::Places>(std::move(*places));
+  }
   return std::make_unique<GraphLocalizer>(std::move(map), setup, T_map_body);
+}
+
+Result<std::unique_ptr<ScanLocalizer>> make_matching(const Config& config, map::PriorMap map,
+                                                     const baselines::MapFilter::Setup& start,
+                                                     const SE3& T_map_body) {
+  if (config.fit_at_query) return make_query_matching(config, std::move(map), start, T_map_body);
+  if (config.method == "graph") return make_graph(config, std::move(map), start, T_map_body);
+  return std::make_unique<MapFilterMethod>(std::move(map), start, T_map_body);
 }
 
 Result<std::unique_ptr<ScanLocalizer>> make_method(const Config& config, map::PriorMap map,
                                                    int threads, const SE3& T_map_body) {
-  const baselines::MapFilter::Setup start = filter_setup(config, threads);
-  if (config.fit_at_query) return make_query_matching(config, std::move(map), start, T_map_body);
-  auto method = make_matching(config, std::move(map), start, T_map_body);
-  if (config.features == "off") return method;
-  method = std::make_unique<FeatureSelection>(std::move(method), feature_config(config),
-                                              config.lidar.range_sigma_m);
+  auto method = make_matching(config, std::move(map), filter_setup(config, threads), T_map_body);
+  if (!method) return method.error();
+  if (config.features != "off" && !config.fit_at_query) {
+    *method = std::make_unique<FeatureSelection>(std::move(*method), feature_config(config),
+                                                 config.lidar.range_sigma_m);
+  }
+  if (config.monitor.method == "dual_index") {
+    *method = std::make_unique<DualIndexLocalizer>(std::move(*method), config.dual_index);
+  }
   return method;
 }
 
@@ -77,9 +90,6 @@ Result<Localizer> Localizer::create(const Config& config, map::PriorMap map,
   }
   auto method = make_method(config, std::move(map), threads, *T_map_body);
   if (!method) return method.error();
-  if (config.monitor.method == "dual_index") {
-    return Localizer(std::make_unique<DualIndexLocalizer>(std::move(*method), config.dual_index));
-  }
   return Localizer(std::move(*method));
 }
 

@@ -47,7 +47,7 @@ GraphLocalizer::GraphLocalizer(map::PriorMap map, const Setup& setup, const SE3&
       smoother_(setup.smoother) {
   scan_.T_body_lidar = setup.start.T_body_lidar;
   if (setup.graph.odometry == "on") witness_ = std::make_unique<OdometryWitness>(setup.odometry);
-  if (setup.monitor) health_.emplace(*setup.monitor);
+  if (setup.monitor) health_.emplace(*setup.monitor, setup.places);
 }
 
 void GraphLocalizer::add_imu(const ImuSample& sample) {
@@ -88,6 +88,7 @@ StepReport GraphLocalizer::start(const Scan& scan) {
   }
   ++scan_number_;
   const bool found = report.state == State::kTracking || report.state == State::kDegraded;
+  if (found) ask_monitor(start_->map(), start_->points(), report);
   // At rest there is nothing to smooth, and the filter knows that the robot does not move.
   if (found && !start_->rests()) take_over();
   return report;
@@ -143,7 +144,8 @@ void GraphLocalizer::step(const Scan& scan, StageClock& clock, StepReport& repor
   estimate_map_error(found);
   describe(found, report);
   judge(found, report);
-  ask_monitor(report);
+  if (scan_.selected.empty()) work_.points.resize(0);
+  ask_monitor(*map_, work_.points, report);
   imu_.drop_before(scan.end_time - kImuMemory);
 }
 
@@ -391,10 +393,10 @@ void GraphLocalizer::judge(const Match& match, StepReport& report) {
   }
 }
 
-void GraphLocalizer::ask_monitor(StepReport& report) {
+void GraphLocalizer::ask_monitor(const map::PriorMap& map, const registration::BodyPoints& points,
+                                 StepReport& report) {
   if (!health_) return;
-  if (scan_.selected.empty()) work_.points.resize(0);
-  health_->judge({*map_, work_.points, scan_.T_body_lidar.translation, witness_ && witness_->broke(),
+  health_->judge({map, points, scan_.T_body_lidar.translation, witness_ && witness_->broke(),
                   witness_ ? witness_->way_squared_distance() : std::nullopt},
                  report);
 }

@@ -63,6 +63,7 @@ class GraphLocalizer : public ScanLocalizer {
     GraphConfig graph;
     odometry::Odometry::Setup odometry;
     std::optional<monitor::MonitorConfig> monitor;  ///< none: nobody asks whether the pose is right
+    std::shared_ptr<const places::Places> places;   ///< of the map, for the monitor; may be null
   };
 
   /// `T_map_body` is the pose at the end of the first scan, to within Setup::start.
@@ -108,7 +109,8 @@ class GraphLocalizer : public ScanLocalizer {
   filter::Matrix6d pose_covariance() const;
   void describe(const Match& match, StepReport& report) const;
   void judge(const Match& match, StepReport& report);
-  void ask_monitor(StepReport& report);
+  void ask_monitor(const map::PriorMap& map, const registration::BodyPoints& points,
+                   StepReport& report);
 
   Setup setup_;
   std::unique_ptr<baselines::MapFilter> start_;  ///< until it has found the pose

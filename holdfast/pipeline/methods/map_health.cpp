@@ -14,6 +14,8 @@ using monitor::Verdict;
 
 // Beyond these a claim misleads.
 constexpr double kWrongM = 0.5;
+constexpr double kReachM = 6.0;       // of a place: twice the way to the next one
+constexpr double kPlaceWorth = 30.0;  // looks: how far a place tells what is usual near it
 constexpr double kBreakLogRatio = 9.0;  // even chances, where they were one in ten thousand
 constexpr double kWrongRad = 5.0 * std::numbers::pi / 180.0;
 
@@ -82,6 +84,7 @@ void MapHealth::judge(const SceneView& scene, StepReport& report) {
   input.way_m = before_ ? (report.T_map_body.translation - before_->translation).norm() : 0.0;
   input.odometry_broke = scene.odometry_broke;
   input.looks = look(scene, report);
+  input.usual = usual(report.T_map_body * scene.p_body_lidar);
   input.way_squared_distance = scene.way_squared_distance;
   before_ = report.T_map_body;
   const Health health = monitor_.judge(input);
@@ -98,6 +101,15 @@ void MapHealth::judge(const SceneView& scene, StepReport& report) {
     return;
   }
   report.reason = reason(health, report.evidence);
+}
+
+std::optional<monitor::UsualLooks> MapHealth::usual(const Eigen::Vector3d& p_map_lidar) const {
+  const places::Place* place = places_ ? places_->nearest(p_map_lidar, kReachM) : nullptr;
+  if (place == nullptr) return std::nullopt;
+  const double short_of_walls = std::max(1e-3, 1.0 - static_cast<double>(place->through_share));
+  return monitor::UsualLooks{
+      {place->agreeing_share, place->through_share, place->unmapped_share / short_of_walls},
+      kPlaceWorth};
 }
 
 std::optional<monitor::Looks> MapHealth::look(const SceneView& scene, const StepReport& report) {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "holdfast/core/step_report.hpp"
 #include "holdfast/map/prior_map.hpp"
 #include "holdfast/monitor/health_monitor.hpp"
+#include "holdfast/places/places.hpp"
 #include "holdfast/registration/correspondences.hpp"
 
 namespace holdfast::pipeline {
@@ -23,7 +25,9 @@ struct SceneView {
 /// the map, asks, and writes the answer into the report of the step.
 class MapHealth {
  public:
-  explicit MapHealth(const monitor::MonitorConfig& config) : config_(config), monitor_(config) {}
+  /// `places` of the map; none: what is usual is learnt in the run.
+  MapHealth(const monitor::MonitorConfig& config, std::shared_ptr<const places::Places> places)
+      : config_(config), monitor_(config), places_(std::move(places)) {}
 
   /// `report` tells the pose, its covariance, the share that agrees, and the state without the
   /// monitor's word. Takes about 0.2 ms.
@@ -31,9 +35,11 @@ class MapHealth {
 
  private:
   std::optional<monitor::Looks> look(const SceneView& scene, const StepReport& report);
+  std::optional<monitor::UsualLooks> usual(const Eigen::Vector3d& p_map_lidar) const;
 
   monitor::MonitorConfig config_;
   monitor::HealthMonitor monitor_;
+  std::shared_ptr<const places::Places> places_;
   std::vector<monitor::SightLine> lines_;
   std::optional<SE3> before_;
 };
