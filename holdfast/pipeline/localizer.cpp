@@ -49,7 +49,8 @@ Result<std::unique_ptr<ScanLocalizer>> make_graph(const Config& config, map::Pri
     setup.monitor = config.monitor;
     setup.places = std::make_shared<const places::Places>(std::move(*places));
   }
-  return std::make_unique<GraphLocalizer>(std::move(map), setup, T_map_body);
+  return std::unique_ptr<ScanLocalizer>(
+      std::make_unique<GraphLocalizer>(std::move(map), setup, T_map_body));
 }
 
 Result<std::unique_ptr<ScanLocalizer>> make_matching(const Config& config, map::PriorMap map,
@@ -57,7 +58,8 @@ Result<std::unique_ptr<ScanLocalizer>> make_matching(const Config& config, map::
                                                      const SE3& T_map_body) {
   if (config.fit_at_query) return make_query_matching(config, std::move(map), start, T_map_body);
   if (config.method == "graph") return make_graph(config, std::move(map), start, T_map_body);
-  return std::make_unique<MapFilterMethod>(std::move(map), start, T_map_body);
+  return std::unique_ptr<ScanLocalizer>(
+      std::make_unique<MapFilterMethod>(std::move(map), start, T_map_body));
 }
 
 Result<std::unique_ptr<ScanLocalizer>> make_method(const Config& config, map::PriorMap map,
