@@ -10,8 +10,9 @@ using Probabilities = std::array<double, kHypotheses>;
 
 // What kind of right, and of wrong, before anything was seen. A world changes from one kind to
 // another within some seconds of driving.
-constexpr Probabilities kKinds = {0.93, 0.03, 0.03, 0.01, 0.6, 0.3, 0.1};
+constexpr Probabilities kKinds = {0.85, 0.03, 0.06, 0.06, 0.6, 0.3, 0.1};
 constexpr double kOtherKindPerS = 0.05;
+constexpr double kBrokeInACrowd = 0.99;  // of the breaks in a crowd: the people's doing
 constexpr double kLeast = 1e-30;
 
 Probabilities with_wrong(double wrong) {
@@ -56,9 +57,7 @@ Belief::Belief(const BeliefConfig& config)
 
 void Belief::pass(double seconds, double way_m, const Onset& onset) {
   const double wrong = sum_of_wrong(history_);
-  const double expected =
-      onset.odometry_broke ? config_.wrong_after_break : in(config_.wrong_per_s, seconds);
-  const double becomes = weighed(expected, onset.log_ratio);
+  const double becomes = p_carried(seconds, onset);
   const double found = in(config_.found_again_per_s, seconds);
   const double other = in(kOtherKindPerS, seconds);
   for (std::size_t h = 0; h < kHypotheses; ++h) {
@@ -70,6 +69,18 @@ void Belief::pass(double seconds, double way_m, const Onset& onset) {
   }
   now_ = history_;
   news_ = -std::expm1(-way_m / config_.news_after_m - seconds / config_.news_after_s);
+}
+
+/// Having been right. An odometry that breaks says that the robot was carried, but for one that has
+/// nothing but people to go by: it breaks of itself.
+double Belief::p_carried(double seconds, const Onset& onset) const {
+  double expected = in(config_.wrong_per_s, seconds);
+  if (onset.odometry_broke) {
+    const double right = 1.0 - sum_of_wrong(history_);
+    const double crowded = history_[static_cast<std::size_t>(Hypothesis::kCrowded)];
+    expected = config_.wrong_after_break * (1.0 - kBrokeInACrowd * crowded / right);
+  }
+  return weighed(expected, onset.log_ratio);
 }
 
 void Belief::hear(const LogLikelihoods& testimony) {

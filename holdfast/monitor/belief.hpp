@@ -60,6 +60,8 @@ class Belief {
  private:
   using Probabilities = std::array<double, kHypotheses>;
 
+  double p_carried(double seconds, const Onset& onset) const;
+
   BeliefConfig config_;
   Probabilities history_;  ///< without the newest scan
   Probabilities now_;      ///< with it

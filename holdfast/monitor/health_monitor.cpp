@@ -38,9 +38,9 @@ void HealthMonitor::remember(const Onset& onset, TimeNs t) {
 
 LogLikelihoods HealthMonitor::hear(const HealthInput& input, Health& health) {
   Testimony testimony{};
-  health.usual = input.usual.value_or(run_.looks());
+  health.usual = input.usual ? input.usual : run_.looks();
   health.seen = input.looks;
-  if (input.looks) testify(*input.looks, health.usual, testimony);
+  if (input.looks && health.usual) testify(*input.looks, *health.usual, testimony);
   if (input.way_squared_distance) testify_way(*input.way_squared_distance, testimony);
   LogLikelihoods all{};
   for (std::size_t w = 0; w < testimony.size(); ++w) {

@@ -27,8 +27,8 @@ struct Health {
   double p_outside = 0;   ///< that the pose is right, and the map has little of what is here
   double p_hidden = 0;    ///< that the pose is right, and people or changes hide the map
   Onset onset;            ///< the strongest of the last seconds
-  UsualLooks usual;       ///< what the scan was held against
   std::optional<Looks> seen;
+  std::optional<UsualLooks> usual;  ///< what that was held against
   /// Of each witness, how much more likely its words are at a wrong pose than at a right one (its
   /// natural logarithm); 0 for one that has said nothing.
   std::array<double, kWitnessNames.size()> log_ratio{};

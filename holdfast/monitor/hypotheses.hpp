@@ -45,7 +45,8 @@ void testify(const Looks& seen, const UsualLooks& usual, Testimony& testimony);
 
 /// Likelihood of the squared Mahalanobis distance (6 degrees of freedom) between the way that the
 /// map's poses tell and the odometry's. At a right pose it is chi-square, but for the odometry's
-/// own failures; at a wrong one it may be of any size, or the same (a wrong place that goes along).
+/// own failures; at a wrong one it may be of any size. That a wrong place goes along is as likely:
+/// this witness speaks against a pose only.
 void testify_way(double squared_distance, Testimony& testimony);
 
 }  // namespace holdfast::monitor

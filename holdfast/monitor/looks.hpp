@@ -16,7 +16,7 @@ struct Looks {
 /// The same three as they are at a right pose in an unchanged world: they differ from place to
 /// place (glass, leaves, clutter, the border of the map), and only against them tells a scan.
 struct UsualLooks {
-  Looks mean;
+  Looks mean{};
   /// How many independent looks the mean is worth: what is known of the place.
   double worth = 30;
 };

@@ -7,7 +7,7 @@ namespace holdfast::monitor {
 namespace {
 
 constexpr TimeNs kLongestGap = kSecond / 2;  // over which a change is sudden
-constexpr double kLeastShare = 0.2;          // below, there is little that could drop
+constexpr double kLeastShare = 0.4;          // below, there is little that could drop
 
 // The drop between two scans at a right pose, as a share of what agreed before: a sum of two Laplace
 // densities, mostly noise, and corners and people now and then (docs/decisions/0008). If the robot

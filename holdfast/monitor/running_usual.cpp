@@ -5,19 +5,23 @@
 namespace holdfast::monitor {
 namespace {
 
-constexpr double kMostWorth = 30;
-constexpr double kScansALook = 10;  // a second of scans sees one view
-constexpr double kSlowest = 0.01;   // of learning: 10 s of scans
+constexpr int kFewestScans = 20;
+constexpr double kWorth = 15;    // looks: the next place may be another sort
+constexpr double kMemory = 100;  // scans
 
 }  // namespace
 
+std::optional<UsualLooks> RunningUsual::looks() const {
+  if (scans_ < kFewestScans) return std::nullopt;
+  return UsualLooks{mean_, kWorth};
+}
+
 void RunningUsual::learn(const Looks& seen) {
-  usual_.worth = std::min(kMostWorth, usual_.worth + 1.0 / kScansALook);
-  const double share = std::max(kSlowest, 1.0 / (usual_.worth * kScansALook));
-  Looks& mean = usual_.mean;
-  mean.agreeing += share * (seen.agreeing - mean.agreeing);
-  mean.through += share * (seen.through - mean.through);
-  mean.unmapped += share * (seen.unmapped - mean.unmapped);
+  ++scans_;
+  const double share = 1.0 / std::min<double>(kMemory, scans_);
+  mean_.agreeing += share * (seen.agreeing - mean_.agreeing);
+  mean_.through += share * (seen.through - mean_.through);
+  mean_.unmapped += share * (seen.unmapped - mean_.unmapped);
 }
 
 }  // namespace holdfast::monitor

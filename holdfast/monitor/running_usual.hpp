@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "holdfast/monitor/looks.hpp"
 
 namespace holdfast::monitor {
@@ -8,14 +10,15 @@ namespace holdfast::monitor {
 /// worth less than the map's word: a pose that is wrong from the start teaches it wrong rates.
 class RunningUsual {
  public:
-  const UsualLooks& looks() const { return usual_; }
+  /// None before it has seen two seconds of scans.
+  std::optional<UsualLooks> looks() const;
 
-  /// A scan at a pose that is held to be right.
+  /// A scan at a pose that nothing speaks against.
   void learn(const Looks& seen);
 
  private:
-  UsualLooks usual_{{0.7, 0.06, 0.02}, kWorthUnseen};
-  static constexpr double kWorthUnseen = 4;
+  int scans_ = 0;
+  Looks mean_;
 };
 
 }  // namespace holdfast::monitor

@@ -70,23 +70,42 @@ Status RunFiles::add(const StepReport& report) {
     trajectory_ << io::format_tum_line({report.pose_time, report.T_map_body}) << '\n';
   }
   steps_ << format_step(report) << '\n';
-  if (!any_ || report.state != last_state_) add_event(report);
+  if (!any_ || report.state != last_state_) add_status(report);
+  if (report.alarm && !alarm_) add_alarm(report);
   any_ = true;
   last_state_ = report.state;
+  alarm_ = report.alarm;
   if (!trajectory_ || !steps_ || !events_) {
     return Error{fmt::format("{}: cannot write: is the disk full?", staging().string())};
   }
   return Done{};
 }
 
-void RunFiles::add_event(const StepReport& report) {
+void RunFiles::add_status(const StepReport& report) {
   nlohmann::ordered_json rest;
   rest["event"] = "status";
   rest["from"] = any_ ? std::string(to_string(last_state_)) : "";
   rest["to"] = to_string(report.state);
   rest["reason"] = report.reason;
-  // The time with all its digits, which a double would not keep.
-  events_ << "{\"t\":" << format_seconds(report.pose_time) << ',' << rest.dump().substr(1) << '\n';
+  add_event(report.pose_time, rest);
+}
+
+void RunFiles::add_alarm(const StepReport& report) {
+  nlohmann::ordered_json rest;
+  rest["event"] = "alarm";
+  rest["reason"] = report.reason;
+  if (report.p_wrong >= 0) rest["p_wrong"] = report.p_wrong;
+  for (const Evidence& evidence : report.evidence) {
+    rest["evidence"].push_back({{"witness", evidence.witness},
+                                {"log_ratio", evidence.log_ratio},
+                                {"text", evidence.text}});
+  }
+  add_event(report.pose_time, rest);
+}
+
+/// The time with all its digits, which a double would not keep.
+void RunFiles::add_event(TimeNs t, const nlohmann::ordered_json& rest) {
+  events_ << "{\"t\":" << format_seconds(t) << ',' << rest.dump().substr(1) << '\n';
 }
 
 Status RunFiles::write(const std::string& name, const std::string& content) {

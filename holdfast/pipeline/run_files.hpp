@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "holdfast/core/result.hpp"
@@ -19,7 +20,8 @@ class RunFiles {
  public:
   static Result<RunFiles> create(const std::filesystem::path& dir);
 
-  /// Appends to trajectory.tum (claims only), steps.csv and, on a change of state, events.jsonl.
+  /// Appends to trajectory.tum (claims only), steps.csv and, on a change of state and when an alarm
+  /// begins (with its evidence), events.jsonl.
   Status add(const StepReport& report);
   /// A further file of the run.
   Status write(const std::string& name, const std::string& content);
@@ -30,7 +32,9 @@ class RunFiles {
 
  private:
   explicit RunFiles(io::AtomicFolder folder);
-  void add_event(const StepReport& report);
+  void add_status(const StepReport& report);
+  void add_alarm(const StepReport& report);
+  void add_event(TimeNs t, const nlohmann::ordered_json& rest);
 
   io::AtomicFolder folder_;
   std::ofstream trajectory_;
@@ -38,6 +42,7 @@ class RunFiles {
   std::ofstream events_;
   State last_state_ = State::kInitializing;
   bool any_ = false;
+  bool alarm_ = false;
 };
 
 /// Marks a folder as a run, so that another run may replace it.

@@ -36,7 +36,7 @@ std::string percent(double seen, double usual) {
 
 std::string words(monitor::Witness witness, const Health& health) {
   const monitor::Looks seen = health.seen.value_or(monitor::Looks{});
-  const monitor::Looks& usual = health.usual.mean;
+  const monitor::Looks usual = health.usual.value_or(monitor::UsualLooks{}).mean;
   switch (witness) {
     case monitor::Witness::kAgreeing:
       return "returns that agree with the map: " + percent(seen.agreeing, usual.agreeing);
