@@ -10,8 +10,8 @@ using Probabilities = std::array<double, kHypotheses>;
 
 // What kind of right, and of wrong, before anything was seen. A world changes from one kind to
 // another within some seconds of driving.
-constexpr Probabilities kKinds = {0.85, 0.03, 0.06, 0.06, 0.6, 0.3, 0.1};
-constexpr double kOtherKindPerS = 0.05;
+constexpr Probabilities kKinds = {0.84, 0.03, 0.06, 0.07, 0.6, 0.33, 0.07};
+constexpr double kOtherKindPerS = 0.02;
 constexpr double kBrokeInACrowd = 0.99;  // of the breaks in a crowd: the people's doing
 constexpr double kLeast = 1e-30;
 

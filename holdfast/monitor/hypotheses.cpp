@@ -72,6 +72,7 @@ double log_chi_square_6(double x) { return 2.0 * std::log(x) - 0.5 * x - std::lo
 
 double log_sum(double a, double b) {
   const double larger = std::max(a, b);
+  if (std::isinf(std::min(a, b))) return larger;
   return larger + std::log1p(std::exp(std::min(a, b) - larger));
 }
 
@@ -93,7 +94,8 @@ void testify_way(double squared_distance, Testimony& testimony) {
   // The distance allows for more than chance does, so that it is mostly smaller than chi-square.
   const double x = std::clamp(squared_distance, kExpectedDistance, kLargestDistance);
   const double consistent = log_chi_square_6(x);
-  const double anything = -std::log(x * std::log(kLargestDistance));
+  // Of any size, but none that would be expected anyway: such a one proves nothing.
+  const double anything = std::log((1.0 - kExpectedDistance / x) / (x * std::log(kLargestDistance)));
   LogLikelihoods& way = testimony[static_cast<std::size_t>(Witness::kWay)];
   for (std::size_t h = 0; h < kHypotheses; ++h) {
     const bool crowded = h == static_cast<std::size_t>(Hypothesis::kCrowded);

@@ -63,7 +63,7 @@ TEST(Hypotheses, AnOdometryThatGoesAlongProvesNothingAndOneThatDoesNotSpeaksAgai
     return of(testimony, Witness::kWay, Hypothesis::kWrongStrange) -
            of(testimony, Witness::kWay, Hypothesis::kUsual);
   };
-  EXPECT_NEAR(against(0.1), 0, 0.15);
+  EXPECT_EQ(against(0.1), 0);
   EXPECT_LT(against(12), 1);
   EXPECT_GT(against(40), 5);
   // Never more than the odometry is to be believed: it is astray once in a thousand.
