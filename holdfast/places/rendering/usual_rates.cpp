@@ -70,7 +70,8 @@ bool View::is_enclosed() const {
   int hits = 0;
   for (int i = 0; i < kLevelRays; ++i) {
     const Ray ray{eye_, direction_of(0, 360.0F * (static_cast<float>(i) + 0.5F) / kLevelRays)};
-    hits += window_.first_hit(ix_, iy_, ray, options_.enclosed_m, touch_m_).has_value() ? 1 : 0;
+    hits +=
+        window_.first_hit(ix_, iy_, map_, ray, options_.enclosed_m, touch_m_).has_value() ? 1 : 0;
   }
   return static_cast<float>(hits) >= options_.enclosed_share * kLevelRays;
 }
@@ -81,7 +82,7 @@ void View::render(std::uint64_t seed) {
   seen_.points.clear();
   for (const Vector3f& direction : directions_) {
     const auto hit =
-        window_.first_hit(ix_, iy_, {eye_, direction}, options_.reach_m, touch_m_);
+        window_.first_hit(ix_, iy_, map_, {eye_, direction}, options_.reach_m, touch_m_);
     if (!hit) continue;
     const float range = (*hit - eye_).norm();
     if (range < options_.nearest_m) continue;
@@ -110,7 +111,8 @@ void View::judge(Place& place) {
 
 void View::follow(Place& place) const {
   std::vector<monitor::SightLine> lines;
-  for (std::size_t i = 0; i < seen_.size(); i += static_cast<std::size_t>(options_.lines_of_sight)) {
+  for (std::size_t i = 0; i < seen_.size();
+       i += static_cast<std::size_t>(options_.lines_of_sight)) {
     lines.push_back({eye_, eye_ + seen_.points[i]});
   }
   const monitor::SightCounts counts = monitor::follow(map_, lines, options_.sight);
