@@ -41,8 +41,8 @@ class PlacedMap {
 };
 
 /// Floor, ceiling and the walls that are asked for, of a room from `low` to `high`.
-inline void add_room(const Vector3d& low, const Vector3d& high, bool end_walls, RandomStream& random,
-                     io::PointCloud& cloud) {
+inline void add_room(const Vector3d& low, const Vector3d& high, bool end_walls,
+                     RandomStream& random, io::PointCloud& cloud) {
   const Vector3d size = high - low;
   const Vector3d x(size.x(), 0, 0), y(0, size.y(), 0), z(0, 0, size.z());
   add_patch(low, x, y, random, cloud.points);

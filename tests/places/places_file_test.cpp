@@ -50,7 +50,8 @@ TEST_F(DamagedPlaces, AnUndamagedFileIsRead) {
 
 TEST_F(DamagedPlaces, AFlippedBitNamesTheFile) {
   const std::string whole = map.bytes();
-  for (const std::size_t at : {std::size_t{0}, std::size_t{5}, whole.size() / 2, whole.size() - 1}) {
+  for (const std::size_t at :
+       {std::size_t{0}, std::size_t{5}, whole.size() / 2, whole.size() - 1}) {
     std::string content = whole;
     content[at] = static_cast<char>(content[at] ^ 4);
     write(content);
