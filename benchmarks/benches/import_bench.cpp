@@ -63,7 +63,8 @@ Result<ordered_json> import(const Files& files, int threads) {
   if (!cloud) return cloud.error();
   const double read = wall_ms();
   WorkerPool pool(threads);
-  const auto info = places::build_map({std::move(*cloud), std::nullopt, "town.pcd"}, files.map, pool);
+  const auto info =
+      places::build_map({std::move(*cloud), std::nullopt, "town.pcd"}, files.map, pool);
   if (!info) return info.error();
   std::uint64_t bytes = 0;
   for (const map::TileInfo& tile : info->tiles) bytes += tile.bytes;

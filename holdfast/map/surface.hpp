@@ -20,6 +20,7 @@ struct Surface {
   SurfaceKind kind;
   std::uint8_t more : 1;        ///< 1: the next Surface belongs to the same cell
   std::uint8_t closed : 1 = 0;  ///< 1: a plane that no ray passes near its centre
+  std::uint8_t unused : 6 = 0;  ///< named, so that all bits of a tile are set: same map, same bits
 };
 static_assert(sizeof(Surface) == 32, "the layout is the format of a tile");
 

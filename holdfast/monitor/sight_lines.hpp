@@ -26,12 +26,12 @@ struct SightCounts {
 };
 
 struct SightOptions {
-  float least_m = 1.0F;             ///< shorter rays are left out: the robot's own parts
-  float margin_m = 0.3F;            ///< by which a ray passes or misses a plane, at least
-  float margin_share = 0.01F;       ///< and as a share of its length
-  float beyond_m = 15.0F;           ///< how far behind a return a plane is looked for
-  float least_cosine = 0.34F;       ///< of the incidence (70 degrees): grazed planes tell little
-  float thickest_m = 0.05F;         ///< planes with a greater sigma are no walls
+  float least_m = 1.0F;        ///< shorter rays are left out: the robot's own parts
+  float margin_m = 0.3F;       ///< by which a ray passes or misses a plane, at least
+  float margin_share = 0.01F;  ///< and as a share of its length
+  float beyond_m = 15.0F;      ///< how far behind a return a plane is looked for
+  float least_cosine = 0.34F;  ///< of the incidence (70 degrees): grazed planes tell little
+  float thickest_m = 0.05F;    ///< planes with a greater sigma are no walls
 };
 
 /// Follows each line through the planes of the map's finest level. About 1 us a line in rooms;

@@ -49,7 +49,8 @@ class Maker {
     if (auto done = find_viewpoints(); !done) return done.error();
     for (const Row& row : rows_) {
       if (!has_viewpoints(row)) continue;
-      const auto loaded = window_.load_rows(info_.tiles[row.begin].iy, options_.view.reach_m, pool_);
+      const auto loaded =
+          window_.load_rows(info_.tiles[row.begin].iy, options_.view.reach_m, pool_);
       if (!loaded) return loaded.error();
       for (std::size_t tile = row.begin; tile < row.end; ++tile) {
         if (auto done = look_round(tile, *map); !done) return done.error();
@@ -69,8 +70,8 @@ class Maker {
       std::vector<std::vector<Standing>> found(row.end - row.begin);
       std::vector<Status> status(found.size(), Done{});
       pool_.run(found.size(), [&](std::size_t i) {
-        auto standing = find_standing_room(dir_, info_.tiles[row.begin + i],
-                                           info_.levels[0].cell_m, window_);
+        auto standing =
+            find_standing_room(dir_, info_.tiles[row.begin + i], info_.levels[0].cell_m, window_);
         if (standing) {
           found[i] = std::move(*standing);
         } else {
@@ -92,10 +93,9 @@ class Maker {
     for (const Vector3f& floor : floors) {
       const auto ix = static_cast<std::int32_t>(std::floor(floor.x() / map::kTileSizeM));
       const auto iy = static_cast<std::int32_t>(std::floor(floor.y() / map::kTileSizeM));
-      const auto tile = std::lower_bound(info_.tiles.begin(), info_.tiles.end(), std::pair(iy, ix),
-                                         [](const map::TileInfo& a, const auto& key) {
-                                           return std::pair(a.iy, a.ix) < key;
-                                         });
+      const auto tile = std::lower_bound(
+          info_.tiles.begin(), info_.tiles.end(), std::pair(iy, ix),
+          [](const map::TileInfo& a, const auto& key) { return std::pair(a.iy, a.ix) < key; });
       of_tile_[static_cast<std::size_t>(tile - info_.tiles.begin())].push_back(
           floor + options_.sensor_height_m * Vector3f::UnitZ());
     }

@@ -30,15 +30,15 @@ Result<std::vector<Place>> parse(const std::filesystem::path& path,
     return Error{fmt::format("{}: not the places of a holdfast map", path.string())};
   }
   if (header.version != kPlacesVersion || header.record_bytes != sizeof(Place)) {
-    return Error{fmt::format("{}: places format {} with records of {} bytes, this program reads {} "
-                             "with {}: import the map again",
-                             path.string(), header.version, header.record_bytes, kPlacesVersion,
-                             sizeof(Place))};
+    return Error{fmt::format(
+        "{}: places format {} with records of {} bytes, this program reads {} "
+        "with {}: import the map again",
+        path.string(), header.version, header.record_bytes, kPlacesVersion, sizeof(Place))};
   }
   const std::size_t expected = sizeof(header) + std::size_t{header.count} * sizeof(Place);
   if (bytes.size() != expected) {
-    return Error{fmt::format("{}: {} bytes, {} expected for {} places", path.string(),
-                             bytes.size(), expected, header.count)};
+    return Error{fmt::format("{}: {} bytes, {} expected for {} places", path.string(), bytes.size(),
+                             expected, header.count)};
   }
   std::vector<Place> places(header.count);
   if (!places.empty()) {

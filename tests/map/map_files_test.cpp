@@ -82,10 +82,10 @@ TEST_F(MapFiles, AFolderWithoutMapYamlIsNoMap) {
 }
 
 TEST_F(MapFiles, ANewerFormatSaysWhichVersionIsRead) {
-  replace_in_yaml("format_version: 1", "format_version: 7");
+  replace_in_yaml("format_version: 2", "format_version: 7");
   EXPECT_THAT(failure(), HasSubstr(yaml.string()));
   EXPECT_THAT(failure(), HasSubstr("format_version 7"));
-  EXPECT_THAT(failure(), HasSubstr("reads 1"));
+  EXPECT_THAT(failure(), HasSubstr("reads 2"));
 }
 
 TEST_F(MapFiles, WhatIsNotYamlNamesTheFile) {
@@ -192,7 +192,7 @@ TEST_F(MapFiles, ATileOfAnotherVersionOrKindIsToldApart) {
   other = whole;
   other[4] = 9;
   write(tile, other);
-  EXPECT_THAT(Tile::open(tile).error().message, HasSubstr("tile format 9, this program reads 1"));
+  EXPECT_THAT(Tile::open(tile).error().message, HasSubstr("tile format 9, this program reads 2"));
 }
 
 TEST_F(MapFiles, ALevelThatPointsOutsideOfItsTileIsNotOpened) {

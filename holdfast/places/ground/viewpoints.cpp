@@ -77,12 +77,11 @@ class Connected {
     for (std::size_t i = 0; i < ground.size(); ++i) ++pieces_[root(i)];
     const std::size_t largest =
         pieces_.empty() ? 0 : *std::max_element(pieces_.begin(), pieces_.end());
-    least_ = std::min(kIslandM2 / (kColumnM * kColumnM), kIslandShare * static_cast<float>(largest));
+    least_ =
+        std::min(kIslandM2 / (kColumnM * kColumnM), kIslandShare * static_cast<float>(largest));
   }
 
-  bool is_island(std::size_t i) {
-    return static_cast<float>(pieces_[root(i)]) < least_;
-  }
+  bool is_island(std::size_t i) { return static_cast<float>(pieces_[root(i)]) < least_; }
 
  private:
   std::size_t root(std::size_t i) {

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "holdfast/core/random.hpp"
@@ -32,6 +33,25 @@ std::vector<Vector3f> directions_of(const ViewOptions& options) {
     }
   }
   return directions;
+}
+
+/// A point of the map nearer to the surface that it was measured on: the noise of the survey is
+/// taken off its distance to the plane, and what the surface itself is off the plane is left.
+Vector3f without_noise(const map::PriorMap& map, const Vector3f& p) {
+  constexpr float kSigmas = 3.0F;  // farther points are not of the plane
+  const auto noise = static_cast<float>(map.info().noise_m);
+  const auto found = map.find(0, p);
+  Vector3f best = p;
+  float least = std::numeric_limits<float>::infinity();
+  for (const map::Surface* s = found.surface; s != nullptr; s = s->more != 0 ? s + 1 : nullptr) {
+    if (s->kind != map::SurfaceKind::kPlane) continue;
+    const float distance = s->normal.dot(p - found.corner - s->center);
+    if (std::abs(distance) > std::min(least, kSigmas * s->sigma_m)) continue;
+    least = std::abs(distance);
+    const float left = 1.0F - noise * noise / (s->sigma_m * s->sigma_m);
+    best = p - (1.0F - std::sqrt(std::max(left, 0.0F))) * distance * s->normal;
+  }
+  return best;
 }
 
 float share(double part, double whole) {
@@ -70,23 +90,25 @@ bool View::is_enclosed() const {
   int hits = 0;
   for (int i = 0; i < kLevelRays; ++i) {
     const Ray ray{eye_, direction_of(0, 360.0F * (static_cast<float>(i) + 0.5F) / kLevelRays)};
-    hits += window_.first_hit(ix_, iy_, ray, options_.enclosed_m, touch_m_).has_value() ? 1 : 0;
+    hits +=
+        window_.first_hit(ix_, iy_, map_, ray, options_.enclosed_m, touch_m_).has_value() ? 1 : 0;
   }
   return static_cast<float>(hits) >= options_.enclosed_share * kLevelRays;
 }
 
-/// What the rays hit: the part along the ray of real points of the map, with the LiDAR's noise.
+/// What the rays hit: real points of the map, with the LiDAR's noise in place of the survey's.
 void View::render(std::uint64_t seed) {
   RandomStream noise(seed, "places");
   seen_.points.clear();
   for (const Vector3f& direction : directions_) {
     const auto hit =
-        window_.first_hit(ix_, iy_, {eye_, direction}, options_.reach_m, touch_m_);
+        window_.first_hit(ix_, iy_, map_, {eye_, direction}, options_.reach_m, touch_m_);
     if (!hit) continue;
-    const float range = (*hit - eye_).norm();
+    const Vector3f way = without_noise(map_, *hit) - eye_;
+    const float range = way.norm();
     if (range < options_.nearest_m) continue;
     const auto error = static_cast<float>(noise.normal(0.0, options_.association.range_sigma_m));
-    seen_.points.push_back((range + error) / range * (*hit - eye_));
+    seen_.points.push_back((range + error) / range * way);
   }
   seen_.age_s.assign(seen_.points.size(), 0.0F);
 }
@@ -110,7 +132,8 @@ void View::judge(Place& place) {
 
 void View::follow(Place& place) const {
   std::vector<monitor::SightLine> lines;
-  for (std::size_t i = 0; i < seen_.size(); i += static_cast<std::size_t>(options_.lines_of_sight)) {
+  for (std::size_t i = 0; i < seen_.size();
+       i += static_cast<std::size_t>(options_.lines_of_sight)) {
     lines.push_back({eye_, eye_ + seen_.points[i]});
   }
   const monitor::SightCounts counts = monitor::follow(map_, lines, options_.sight);

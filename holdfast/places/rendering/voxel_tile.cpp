@@ -15,9 +15,7 @@ struct VoxelTile::Key {
   int bx() const { return static_cast<int>(rest >> 9) % kBlocksPerTile; }
   int by() const { return static_cast<int>(rest >> 9) / kBlocksPerTile; }
   std::uint32_t voxel() const { return rest & 511U; }
-  bool same_block(const Key& other) const {
-    return bz == other.bz && rest >> 9 == other.rest >> 9;
-  }
+  bool same_block(const Key& other) const { return bz == other.bz && rest >> 9 == other.rest >> 9; }
 };
 
 VoxelTile::Key VoxelTile::key_of(const Eigen::Vector3f& p, std::uint32_t number) {

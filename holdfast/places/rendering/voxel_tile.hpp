@@ -28,8 +28,8 @@ class VoxelTile {
 
    private:
     friend class VoxelTile;
-    std::array<std::uint64_t, kVoxelsPerBlock> bits_{};    // one word a layer
-    std::array<std::uint32_t, kVoxelsPerBlock> first_{};   // occupied voxels before each layer
+    std::array<std::uint64_t, kVoxelsPerBlock> bits_{};   // one word a layer
+    std::array<std::uint32_t, kVoxelsPerBlock> first_{};  // occupied voxels before each layer
   };
 
   /// nullptr where no point is.
@@ -52,7 +52,7 @@ class VoxelTile {
   static Key key_of(const Eigen::Vector3f& p, std::uint32_t number);
   void add_voxel(const Key& key);
 
-  int low_z_ = 0;   // lowest layer of blocks
+  int low_z_ = 0;  // lowest layer of blocks
   int layers_ = 0;
   std::vector<std::uint32_t> index_;  // 0, or 1 + number of the block
   std::vector<Block> blocks_;

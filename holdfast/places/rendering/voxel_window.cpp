@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
-
-#include "holdfast/map/prior_map.hpp"
 
 namespace holdfast::places {
 namespace {
@@ -63,17 +60,41 @@ std::optional<Vector3f> nearest_point(const Site& site, const Vector3i& voxel, c
   return nearest;
 }
 
+/// Does the ray cross a closed plane between `begin` and `end` metres from its start?
+bool crosses_wall(const map::PriorMap& map, const Path& path, float begin, float end) {
+  constexpr float kNoiseM = 0.03F;  // of the points: they may lie in the next voxel
+  const auto found = map.find(0, path.at(0.5F * (begin + end)));
+  for (const map::Surface* s = found.surface; s != nullptr; s = s->more != 0 ? s + 1 : nullptr) {
+    if (s->closed == 0) continue;
+    const float t =
+        s->normal.dot(s->center + found.corner - path.from) / s->normal.dot(path.direction);
+    if (t > begin - kNoiseM && t < end + kNoiseM) return true;
+  }
+  return false;
+}
+
+/// How near a ray must come to a point, and the planes between the points.
+struct Touch {
+  float touch_m;
+  const map::PriorMap& map;
+};
+
 /// The first hit between `t` and `end` inside of one block.
 std::optional<Vector3f> hit_in_block(const Site& site, const Path& path, float t, float end,
-                                     float touch_m) {
+                                     const Touch& touch) {
+  constexpr float kAnywhere = 2.0F * kVoxelM;
   while (t < end) {
     const Vector3i voxel = path.cell(t, kVoxelM);
     const Vector3i inside = voxel - site.low;
+    const float exit = std::max(t, path.exit(voxel, kVoxelM));
     if ((inside.array() >= 0).all() && (inside.array() < kVoxelsPerBlock).all() &&
         site.block->occupied(inside.x(), inside.y(), inside.z())) {
-      if (const auto hit = nearest_point(site, inside, path, touch_m)) return hit;
+      if (const auto hit = nearest_point(site, inside, path, touch.touch_m)) return hit;
+      if (crosses_wall(touch.map, path, t, exit)) {
+        return nearest_point(site, inside, path, kAnywhere);
+      }
     }
-    t = std::max(t, path.exit(voxel, kVoxelM)) + kPast;
+    t = exit + kPast;
   }
   return std::nullopt;
 }
@@ -114,9 +135,11 @@ const VoxelTile* VoxelWindow::tile(std::int32_t ix, std::int32_t iy) const {
   return found == tiles_.end() ? nullptr : found->second.get();
 }
 
-std::optional<Vector3f> VoxelWindow::first_hit(std::int32_t ix, std::int32_t iy, const Ray& ray,
+std::optional<Vector3f> VoxelWindow::first_hit(std::int32_t ix, std::int32_t iy,
+                                               const map::PriorMap& map, const Ray& ray,
                                                float reach_m, float touch_m) const {
   const Path path(ray);
+  const Touch touch{touch_m, map};
   Site site;
   Vector3i tile_at(std::numeric_limits<int>::max(), 0, 0);
   for (float t = 0; t < reach_m;) {
@@ -134,7 +157,7 @@ std::optional<Vector3f> VoxelWindow::first_hit(std::int32_t ix, std::int32_t iy,
                                     block.y() - at.y() * kBlocksPerTile, block.z());
       if (site.block != nullptr) {
         site.low = kVoxelsPerBlock * block;
-        if (const auto hit = hit_in_block(site, path, t, std::min(end, reach_m), touch_m)) {
+        if (const auto hit = hit_in_block(site, path, t, std::min(end, reach_m), touch)) {
           return hit;
         }
       }

@@ -11,7 +11,7 @@
 
 #include "holdfast/core/parallel.hpp"
 #include "holdfast/core/result.hpp"
-#include "holdfast/map/map_info.hpp"
+#include "holdfast/map/prior_map.hpp"
 #include "holdfast/places/rendering/voxel_tile.hpp"
 
 namespace holdfast::places {
@@ -35,9 +35,11 @@ class VoxelWindow {
   Status load_rows(std::int32_t iy, float reach_m, WorkerPool& pool);
 
   /// The first point of the map that the ray meets within `reach_m`: the point nearest to the ray
-  /// of the first voxel in which one is nearer to it than `touch_m`.
-  std::optional<Eigen::Vector3f> first_hit(std::int32_t ix, std::int32_t iy, const Ray& ray,
-                                           float reach_m, float touch_m) const;
+  /// of the first voxel in which one is nearer to it than `touch_m`, or in which the ray crosses a
+  /// closed plane of `map` (focused on that tile): between the points of a wall nothing is seen.
+  std::optional<Eigen::Vector3f> first_hit(std::int32_t ix, std::int32_t iy,
+                                           const map::PriorMap& map, const Ray& ray, float reach_m,
+                                           float touch_m) const;
 
   /// True if no point lies in the upright cylinder (by voxels, by their centres and low borders).
   bool is_free(std::int32_t ix, std::int32_t iy, const Eigen::Vector3f& base, float radius_m,
