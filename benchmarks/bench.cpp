@@ -14,7 +14,7 @@
 namespace holdfast::benchmarks {
 namespace {
 
-constexpr std::array<BenchInfo, 10> kBenches = {{
+constexpr std::array<BenchInfo, 11> kBenches = {{
     {"step",
      "time of a step, beside a k-d-tree registration and plain reading of the log",
      {1, 1},
@@ -32,6 +32,12 @@ constexpr std::array<BenchInfo, 10> kBenches = {{
      60,
      measure_scenarios,
      true,
+     true},
+    {"regions",
+     "errors by region of the campus, over its whole way in one drive",
+     {1, 1},
+     10000,
+     measure_regions,
      true},
     {"import",
      "time and memory of making and using a map of 2 million points",

@@ -45,8 +45,8 @@ class Placing {
 };
 
 double moving_share(const std::vector<simulation::TrueReturn>& truth) {
-  const auto moving = std::count_if(truth.begin(), truth.end(),
-                                    [](const auto& hit) { return hit.moving; });
+  const auto moving =
+      std::count_if(truth.begin(), truth.end(), [](const auto& hit) { return hit.moving; });
   return truth.empty() ? 0 : static_cast<double>(moving) / static_cast<double>(truth.size());
 }
 
