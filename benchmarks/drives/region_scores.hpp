@@ -12,10 +12,10 @@ namespace holdfast::benchmarks {
 struct RegionScore {
   std::string name;
   std::size_t scans = 0;
-  double path_m = 0;              ///< true way of the robot within it
-  std::vector<double> trans_m;    ///< errors of the claims, of those with truth
-  evaluation::Share trusted;      ///< TRACKING or DEGRADED
-  evaluation::Share misleading;   ///< trusted, and more than 0.5 m or 5 degrees wrong
+  double path_m = 0;             ///< true way of the robot within it
+  std::vector<double> trans_m;   ///< errors of the claims, of those with truth
+  evaluation::Share trusted;     ///< TRACKING or DEGRADED
+  evaluation::Share misleading;  ///< trusted, and more than 0.5 m or 5 degrees wrong
 };
 
 /// The scans of a run by the region in which the robot truly was; then "elsewhere", those in no
