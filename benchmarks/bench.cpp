@@ -14,7 +14,7 @@
 namespace holdfast::benchmarks {
 namespace {
 
-constexpr std::array<BenchInfo, 11> kBenches = {{
+constexpr std::array<BenchInfo, 12> kBenches = {{
     {"step",
      "time of a step, beside a k-d-tree registration and plain reading of the log",
      {1, 1},
@@ -40,6 +40,12 @@ constexpr std::array<BenchInfo, 11> kBenches = {{
      measure_detection,
      true,
      true},
+    {"regions",
+     "errors by region of the campus, over its whole way in one drive",
+     {1, 1},
+     10000,
+     measure_regions,
+     true},
     {"import",
      "time and memory of making and using a map of 2 million points",
      {1, 1},
@@ -47,10 +53,12 @@ constexpr std::array<BenchInfo, 11> kBenches = {{
      measure_import},
     {"simulator", "speed of the simulator, in process and to a bag", {1, 1}, 20, measure_simulator},
     {"features",
-     "edges and planes of scans: counts, precision, recall and time of each smoothness",
+     "edges and planes of scans: counts, precision, recall, time; matches, returns, occlusion",
      {1, 1},
      10,
-     measure_features},
+     measure_features,
+     false,
+     true},
     {"deskew",
      "distance of points from their surfaces, raw and deskewed, on straights and in turns",
      {1, 5},

@@ -11,6 +11,7 @@
 #include "simulation/crowd/crowd.hpp"
 #include "simulation/events/event_schedule.hpp"
 #include "simulation/sensors/imu/imu_sensor.hpp"
+#include "simulation/sensors/lidar/beam_errors.hpp"
 #include "simulation/sensors/lidar/lidar_sensor.hpp"
 #include "simulation/transport/losses.hpp"
 #include "simulation/world/survey.hpp"
@@ -19,6 +20,12 @@ namespace holdfast::simulation {
 namespace {
 
 constexpr TimeNs kEpoch = 1'700'000'000 * kSecond;
+
+/// With the errors of this seed's LiDAR.
+SimulationOptions as_built(SimulationOptions options) {
+  options.lidar = with_beam_errors(std::move(options.lidar), options.seed);
+  return options;
+}
 
 std::string late_event(const SimulationOptions& options, TimeNs duration) {
   for (const EventSpec& event : options.events) {
@@ -103,7 +110,7 @@ struct Simulation::Parts {
 
 Simulation::Parts::Parts(Scenario the_scenario, std::optional<ChangedWorld> change,
                          const SimulationOptions& the_options, Drive the_drive)
-    : options(the_options),
+    : options(as_built(the_options)),
       scenario(std::move(the_scenario)),
       changes(change ? change->changes : std::vector<ObjectChange>()),
       world_before(change ? std::optional(std::move(change->before)) : std::nullopt),

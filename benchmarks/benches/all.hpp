@@ -27,6 +27,9 @@ Result<BenchReport> measure_scenarios(const BenchOptions& options);
 /// threshold would give, and whether the probability means something. `threads` places are driven
 /// through at a time, each on one thread.
 Result<BenchReport> measure_detection(const BenchOptions& options);
+/// The campus in one drive of its whole way (at most `duration_s` of it), in its own survey: errors
+/// and claims by its regions. `threads` cast rays and fit surfaces; the localizer has one.
+Result<BenchReport> measure_regions(const BenchOptions& options);
 
 /// Making a map of 2 million points and localizing in it, each in a process of its own, so that the
 /// peak memory is its own. `threads` fit the surfaces.

@@ -6,11 +6,13 @@ namespace holdfast::simulation {
 
 Material material_of(const std::string& name) {
   static constexpr std::array kAll = {
-      materials::kIdeal,     materials::kPlaster,      materials::kConcrete,  materials::kBrick,
-      materials::kAsphalt,   materials::kGrass,        materials::kFoliage,   materials::kLinoleum,
-      materials::kCarpet,    materials::kCeilingTile,  materials::kWood,      materials::kFabric,
-      materials::kCardboard, materials::kPaintedMetal, materials::kAluminium, materials::kClothing,
-      materials::kGlass,     materials::kPolishedStone};
+      materials::kIdeal,       materials::kPlaster,      materials::kConcrete,
+      materials::kBrick,       materials::kAsphalt,      materials::kGrass,
+      materials::kFoliage,     materials::kLinoleum,     materials::kCarpet,
+      materials::kCeilingTile, materials::kWood,         materials::kFabric,
+      materials::kCardboard,   materials::kPaintedMetal, materials::kAluminium,
+      materials::kClothing,    materials::kGlass,        materials::kPolishedStone,
+      materials::kClearGlass,  materials::kMirrorStone,  materials::kMirrorSteel};
   for (const Material& material : kAll) {
     if (name == material.name) return material;
   }

@@ -11,7 +11,8 @@ namespace holdfast::simulation {
 
 inline constexpr std::string_view kMaterialNames =
     "ideal|plaster|concrete|brick|asphalt|grass|foliage|linoleum|carpet|ceiling tile|wood|fabric|"
-    "cardboard|painted metal|aluminium|clothing|glass|polished stone";
+    "cardboard|painted metal|aluminium|clothing|glass|polished stone|clear glass|mirror stone|"
+    "mirror steel";
 
 /// One of kMaterialNames.
 Material material_of(const std::string& name);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/sensors/lidar/beam_errors.hpp"
 #include "simulation/truth/true_edges.hpp"
 
 namespace holdfast::simulation {
@@ -98,10 +99,12 @@ RayPacket packet_of(const std::vector<Ray>& rays, std::size_t first) {
 
 std::vector<Ray> rays_of(const Scan& scan, const LidarModel& lidar, const Drive& drive) {
   std::vector<Ray> rays;
+  const TrueDirections truly(lidar);
   for (const ScanPoint& point : scan.points) {
     const SE3 T_map_lidar =
         drive.at(scan.stamp + point.time_offset_ns).T_map_body * lidar.T_body_lidar;
-    const Vector3d direction = Vector3d(point.x, point.y, point.z).normalized();
+    const Vector3d stated = Vector3d(point.x, point.y, point.z).normalized();
+    const Vector3d direction = truly.of(stated, point.ring);
     rays.push_back({T_map_lidar.translation, T_map_lidar.rotation * direction});
   }
   return rays;

@@ -38,6 +38,11 @@ inline constexpr Material kAluminium{"aluminium", 0.6, 0.75, 0.1, 0.2, 0.15};
 inline constexpr Material kClothing{"clothing", 0.3, 1.0, 0.0};
 inline constexpr Material kGlass{"glass", 0.9, 0.012, 0.1, 0.9, 0.06, 0.04};
 inline constexpr Material kPolishedStone{"polished stone", 0.2, 0.07, 0.25, 0.6, 0.2, 0.6};
+// Clean, without frames or print: next to nothing is scattered, and what is mirrored keeps within a
+// degree and a half.
+inline constexpr Material kClearGlass{"clear glass", 0.9, 0.002, 0.1, 0.9, 0.025, 0.02};
+inline constexpr Material kMirrorStone{"mirror stone", 0.2, 0.01, 0.25, 0.6, 0.1, 0.6};
+inline constexpr Material kMirrorSteel{"mirror steel", 0.7, 0.04, 0.1, 0.9, 0.08, 0.5};
 
 }  // namespace materials
 

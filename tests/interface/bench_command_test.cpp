@@ -25,7 +25,7 @@ TEST(BenchCommand, WritesTheTableThatItPrints) {
 TEST(BenchCommand, NamesTheBenchesWhenAskedForAnotherOne) {
   const auto run = run_program("bench speed --out " + scratch());
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.out.find("step, accuracy, scenarios, import, simulator"), std::string::npos)
+  EXPECT_NE(run.out.find("step, accuracy, scenarios, regions, import"), std::string::npos)
       << run.out;
   EXPECT_FALSE(std::filesystem::exists(scratch()));
 }

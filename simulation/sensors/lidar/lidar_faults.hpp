@@ -20,6 +20,10 @@ struct LidarFaults {
   double range_noise_per_m = 0;
   double incidence_noise = 0;
   double most_range_sigma_m = 0.3;
+  /// Errors of calibration that a beam keeps for good: of all its ranges, and of its elevation and
+  /// azimuth each.
+  double beam_offset_sigma_m = 0;
+  double beam_angle_sigma_deg = 0;
 
   bool limited_reach = false;  ///< by the link budget, see LinkBudget
   double dropout_share = 0;    ///< of returns, lost at random
@@ -45,6 +49,14 @@ struct LidarFaults {
                    0, 10});
     visit("most_range_sigma_m", self.most_range_sigma_m,
           FieldDoc{"noise of a range is never more than that", 0, 10});
+    visit("beam_offset_sigma_m", self.beam_offset_sigma_m,
+          FieldDoc{"of the error of calibration that all ranges of a beam share; drawn once for "
+                   "each beam and seed",
+                   0, 1});
+    visit("beam_angle_sigma_deg", self.beam_angle_sigma_deg,
+          FieldDoc{"likewise of its elevation and of its azimuth, each: the points lie where the "
+                   "beam should point",
+                   0, 5});
     visit("limited_reach", self.limited_reach,
           FieldDoc{"dark, tilted and far surfaces are lost: half of the returns where "
                    "reflectivity * cos(angle) / range^2 is that of a square surface of 10 % at "

@@ -9,11 +9,22 @@
 
 namespace holdfast::simulation {
 
+/// What is wrong with the calibration of a beam: true minus stated angles, measured minus true
+/// ranges.
+struct BeamError {
+  double range_m = 0;
+  double elevation_rad = 0;  ///< upwards
+  double azimuth_rad = 0;    ///< counter-clockwise seen from above
+
+  bool turns() const { return elevation_rad != 0 || azimuth_rad != 0; }
+};
+
 /// One laser of a spinning LiDAR.
 struct LidarBeam {
   double elevation_rad = 0;
   TimeNs fire_offset = 0;  ///< from the start of its column; ascending over the list of beams
   std::uint16_t ring = 0;  ///< index from the lowest beam up
+  BeamError error = {};    ///< that nobody knows of, see with_beam_errors()
 };
 
 /// How a LiDAR looks about that does not spin steadily: its head turns at `turn_hz` (at most once a

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "holdfast/core/random.hpp"
+#include "simulation/sensors/lidar/beam_errors.hpp"
 #include "simulation/sensors/lidar/scan_pattern.hpp"
 
 namespace holdfast::simulation {
@@ -74,9 +75,28 @@ LidarSensor::LidarSensor(const LidarModel& model, std::uint64_t seed, const Weat
     : model_(model),
       seed_(seed),
       returns_(ReturnModel::create(model, weather)),
-      column_times_(column_times(model)),
-      directions_(ray_directions(model, 0)) {
+      column_times_(column_times(model)) {
   assert(!model.beams.empty() && model.columns > 0);
+  look_about(0);
+}
+
+/// The directions of a frame, and where its points are to lie if beams point elsewhere.
+void LidarSensor::look_about(std::size_t frame) {
+  frame_ = frame;
+  directions_ = ray_directions(model_, frame);
+  const TrueDirections truly(model_);
+  if (truly.as_stated()) return;
+  stated_ = directions_;
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    const std::uint16_t ring = model_.beams[i % model_.beams.size()].ring;
+    directions_[i] = truly.of(stated_[i].cast<double>(), ring).cast<float>();
+  }
+}
+
+/// Where the LiDAR puts what it measures at `range`; `ray` is [column][beam].
+Vector3d LidarSensor::point_at(double range, std::size_t ray) const {
+  const double measured = range + model_.beams[ray % model_.beams.size()].error.range_m;
+  return measured * (stated_.empty() ? directions_ : stated_)[ray].cast<double>();
 }
 
 TimeNs LidarSensor::fire_time(std::size_t column, std::size_t beam) const {
@@ -235,7 +255,7 @@ void LidarSensor::measure_chunk(Chunk& chunk, const Surroundings& around) const 
     if (!(returned || model_.keep_all_returns)) continue;
     if (is_blind(around.blind, chunk.scan_begin + offset)) continue;
     const double range = chunk.range[i] + error;
-    const Vector3d point = range * directions_[column * beams + beam].cast<double>();
+    const Vector3d point = point_at(range, column * beams + beam);
     const double intensity = std::round(255 * material.reflectivity * cos_incidence);
     chunk.points.push_back({static_cast<float>(point.x()), static_cast<float>(point.y()),
                             static_cast<float>(point.z()), static_cast<float>(intensity),
@@ -291,7 +311,7 @@ void LidarSensor::measure_spoilt(Chunk& chunk, const Surroundings& around) const
     const TimeNs offset = fire_time(column, beam);
     if (is_blind(around.blind, chunk.scan_begin + offset)) continue;
     const double range = echo.range + range_sigma(model_, echo.range, echo.cos_incidence) * drawn;
-    const Vector3d point = range * directions_[column * beams + beam].cast<double>();
+    const Vector3d point = point_at(range, column * beams + beam);
     const double intensity = std::round(255 * returns_->brightness(echo, materials));
     chunk.points.push_back({static_cast<float>(point.x()), static_cast<float>(point.y()),
                             static_cast<float>(point.z()), static_cast<float>(intensity),
@@ -330,8 +350,7 @@ LidarSensor::Revolution LidarSensor::revolve_with_kinds(std::size_t index, TimeN
                                                         WorkerPool& pool) const {
   if (model_.rosette && frame_ != index) {
     LidarSensor later = *this;
-    later.frame_ = index;
-    later.directions_ = ray_directions(model_, index);
+    later.look_about(index);
     return later.revolve_with_kinds(index, begin, around, pool);
   }
   Revolution out;

@@ -59,6 +59,8 @@ class LidarSensor {
   std::vector<Chunk> cast(std::size_t index, TimeNs begin, const Surroundings& around,
                           WorkerPool& pool) const;
   void prepare_chunk(Chunk& chunk, const Surroundings& around) const;
+  void look_about(std::size_t frame);
+  Eigen::Vector3d point_at(double range, std::size_t ray) const;
   ColumnPose column_pose(const Drive& drive, TimeNs t) const;
   TimeNs fire_time(std::size_t column, std::size_t beam) const;
   void cast_chunk(Chunk& chunk, const Surroundings& around) const;
@@ -77,6 +79,7 @@ class LidarSensor {
   std::optional<ReturnModel> returns_;       ///< none: no faults, clear air
   std::vector<TimeNs> column_times_;         ///< from the start of the revolution
   std::vector<Eigen::Vector3f> directions_;  ///< in the lidar frame, [column][beam]
+  std::vector<Eigen::Vector3f> stated_;      ///< those of its points; empty: the same
   std::size_t frame_ = 0;                    ///< of a rosette, whose directions they are
 };
 
