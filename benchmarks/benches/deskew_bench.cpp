@@ -6,13 +6,13 @@
 #include <limits>
 
 #include "benchmarks/benches/all.hpp"
-#include "benchmarks/benches/deskew_errors.hpp"
 #include "benchmarks/benches/filter_run.hpp"
 #include "benchmarks/drives/drive_series.hpp"
 #include "benchmarks/drives/localization.hpp"
 #include "benchmarks/harness/figures.hpp"
 #include "benchmarks/harness/scratch_folder.hpp"
 #include "benchmarks/harness/table.hpp"
+#include "benchmarks/scores/deskew_errors.hpp"
 #include "evaluation/result/number_text.hpp"
 #include "holdfast/pipeline/event_sequencer.hpp"
 

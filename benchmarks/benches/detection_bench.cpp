@@ -65,9 +65,9 @@ void drive_all(std::size_t number, const Place& place, const BenchOptions& optio
   Result<SurveyedDrive> surveyed =
       scratch ? survey_drive(spec, scratch->path()) : Result<SurveyedDrive>(scratch.error());
   for (const DetectionCase& what : detection_cases(options.duration_s)) {
-    drives.add(number, fmt::format("{} {}, {}", place.scenario, place.seed, what.name),
-               surveyed ? monitor_drive(what, spec, *surveyed)
-                        : Result<MonitoredDrive>(surveyed.error()));
+    drives.add(
+        number, fmt::format("{} {}, {}", place.scenario, place.seed, what.name),
+        surveyed ? monitor_drive(what, spec, *surveyed) : Result<MonitoredDrive>(surveyed.error()));
   }
 }
 
@@ -154,8 +154,7 @@ void sweep(const Drives& drives, BenchReport& report) {
       const auto s =
           score(drives, "", [&](const auto& d) { return alarms_by_dual_index(d, config); });
       add_row(table, fmt::format("dual index, alpha {}, d_th {} m", alpha, jump_m), s);
-      report.data["sweep"].push_back(
-          {{"alpha", alpha}, {"jump_m", jump_m}, {"score", json_of(s)}});
+      report.data["sweep"].push_back({{"alpha", alpha}, {"jump_m", jump_m}, {"score", json_of(s)}});
     }
   }
   report.markdown += "\n" + table.markdown();
@@ -223,7 +222,8 @@ Result<BenchReport> measure_detection(const BenchOptions& options) {
   report.data["failures"] = drives.failures();
   report.markdown += fmt::format(
       "\n{} seeds of {} scenarios, {:.0f} s each; events happen halfway. An event is a pose that "
-      "becomes more than 0.5 m or 5 degrees wrong; it is missed if there is no alarm within 5 s (of "
+      "becomes more than 0.5 m or 5 degrees wrong; it is missed if there is no alarm within 5 s "
+      "(of "
       "motion, after a wrong start). Right: time in which an alarm is false.\n",
       options.seeds.count(), places->size() / options.seeds.count(), options.duration_s);
   for (const std::string& failure : drives.failures()) {

@@ -4,10 +4,10 @@
 #include <numbers>
 
 #include "benchmarks/benches/all.hpp"
-#include "benchmarks/drives/scan_census.hpp"
 #include "benchmarks/harness/figures.hpp"
 #include "benchmarks/harness/scratch_folder.hpp"
 #include "benchmarks/harness/table.hpp"
+#include "benchmarks/scores/scan_census.hpp"
 #include "evaluation/result/number_text.hpp"
 #include "evaluation/statistics.hpp"
 #include "holdfast/core/stage_clock.hpp"

@@ -5,10 +5,10 @@
 
 #include "benchmarks/benches/all.hpp"
 #include "benchmarks/drives/localization.hpp"
-#include "benchmarks/drives/region_scores.hpp"
 #include "benchmarks/harness/figures.hpp"
 #include "benchmarks/harness/scratch_folder.hpp"
 #include "benchmarks/harness/table.hpp"
+#include "benchmarks/scores/region_scores.hpp"
 #include "evaluation/result/number_text.hpp"
 
 namespace holdfast::benchmarks {

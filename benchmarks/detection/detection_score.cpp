@@ -93,8 +93,7 @@ DetectionScore& DetectionScore::operator+=(const DetectionScore& other) {
 }
 
 double DetectionScore::false_alarms_per_h() const {
-  return right_s > 0 ? static_cast<double>(false_alarms) * 3600.0 / right_s
-                     : evaluation::kNotKnown;
+  return right_s > 0 ? static_cast<double>(false_alarms) * 3600.0 / right_s : evaluation::kNotKnown;
 }
 
 }  // namespace holdfast::benchmarks

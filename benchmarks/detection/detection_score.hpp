@@ -25,11 +25,11 @@ Alarms alarms_by_dual_index(const MonitoredDrive& drive, const monitor::DualInde
 /// the pose was right all the while and is so for the next second. After an event a drive is not
 /// looked at any more.
 struct DetectionScore {
-  evaluation::Share missed;       ///< of the events
-  std::vector<double> delays_s;   ///< of those found; a wrong start's counted in motion only
+  evaluation::Share missed;      ///< of the events
+  std::vector<double> delays_s;  ///< of those found; a wrong start's counted in motion only
   std::size_t false_alarms = 0;
-  double right_s = 0;             ///< time in which an alarm would have been false
-  std::size_t misleading = 0;     ///< scans trusted and wrong before the alarm
+  double right_s = 0;          ///< time in which an alarm would have been false
+  std::size_t misleading = 0;  ///< scans trusted and wrong before the alarm
   double longest_misleading_s = 0;
 
   void add(const MonitoredDrive& drive, const Alarms& alarms);

@@ -40,8 +40,7 @@ ScanHealth health_of(const StepReport& step, const simulation::Simulation& drive
 }
 
 /// At the end of the first scan.
-SE3 initial_pose(const DetectionCase& what, simulation::Simulation& drive,
-                 double duration_s) {
+SE3 initial_pose(const DetectionCase& what, simulation::Simulation& drive, double duration_s) {
   const SE3 truth = drive.initial_pose();
   if (what.mishap != Mishap::kWrongStart) return truth;
   if (what.start_share >= 0) {

@@ -11,13 +11,13 @@ Health HealthMonitor::judge(const HealthInput& input) {
   Health health;
   const double seconds = before_ == 0 ? 0.0 : to_seconds(input.t - before_);
   before_ = input.t;
-  const Onset onset = watch_.watch(
-      input.t, input.looks ? std::optional(input.looks->agreeing) : std::nullopt,
-      input.odometry_broke);
+  const Onset onset =
+      watch_.watch(input.t, input.looks ? std::optional(input.looks->agreeing()) : std::nullopt,
+                   input.odometry_broke);
   remember(onset, input.t);
   health.onset = onset_;
   belief_.pass(seconds, input.way_m, onset);
-  belief_.hear(hear(input, health));
+  hear(input, health);
   health.p_wrong = belief_.p_wrong();
   health.p_outside = belief_.probability(Hypothesis::kOutside);
   health.p_hidden =
@@ -36,18 +36,20 @@ void HealthMonitor::remember(const Onset& onset, TimeNs t) {
   onset_time_ = t;
 }
 
-LogLikelihoods HealthMonitor::hear(const HealthInput& input, Health& health) {
+void HealthMonitor::hear(const HealthInput& input, Health& health) {
   Testimony testimony{};
   health.usual = input.usual ? input.usual : run_.looks();
   health.seen = input.looks;
   if (input.looks && health.usual) testify(*input.looks, *health.usual, testimony);
   if (input.way_squared_distance) testify_way(*input.way_squared_distance, testimony);
-  LogLikelihoods all{};
+  constexpr auto kWay = static_cast<std::size_t>(Witness::kWay);
+  LogLikelihoods scene{};
   for (std::size_t w = 0; w < testimony.size(); ++w) {
     health.log_ratio[w] = belief_.log_ratio(testimony[w]);
-    for (std::size_t h = 0; h < kHypotheses; ++h) all[h] += testimony[w][h];
+    if (w == kWay) continue;
+    for (std::size_t h = 0; h < kHypotheses; ++h) scene[h] += testimony[w][h];
   }
-  return all;
+  belief_.hear(scene, testimony[kWay]);
 }
 
 /// A pose that is lost is not found by a little less doubt.

@@ -3,18 +3,18 @@
 #include <optional>
 
 #include "holdfast/core/time.hpp"
-#include "holdfast/monitor/belief.hpp"
+#include "holdfast/monitor/evidence/belief.hpp"
+#include "holdfast/monitor/evidence/running_usual.hpp"
 #include "holdfast/monitor/monitor_config.hpp"
-#include "holdfast/monitor/running_usual.hpp"
 
 namespace holdfast::monitor {
 
 /// What the monitor is told after a scan.
 struct HealthInput {
   TimeNs t = 0;
-  double way_m = 0;             ///< since the scan before
-  bool odometry_broke = false;  ///< it says that the robot was carried
-  std::optional<Looks> looks;   ///< none: the scan has no returns
+  double way_m = 0;                            ///< since the scan before
+  bool odometry_broke = false;                 ///< it says that the robot was carried
+  std::optional<Looks> looks;                  ///< none: the scan has no returns
   std::optional<UsualLooks> usual;             ///< of the place, by the map; none: of this run
   std::optional<double> way_squared_distance;  ///< of the map's poses from the odometry
 };
@@ -23,10 +23,10 @@ enum class Verdict : std::uint8_t { kHealthy, kSuspect, kLost };
 
 struct Health {
   Verdict verdict = Verdict::kHealthy;
-  double p_wrong = 0;     ///< that the pose is of another place
-  double p_outside = 0;   ///< that the pose is right, and the map has little of what is here
-  double p_hidden = 0;    ///< that the pose is right, and people or changes hide the map
-  Onset onset;            ///< the strongest of the last seconds
+  double p_wrong = 0;    ///< that the pose is of another place
+  double p_outside = 0;  ///< that the pose is right, and the map has little of what is here
+  double p_hidden = 0;   ///< that the pose is right, and people or changes hide the map
+  Onset onset;           ///< the strongest of the last seconds
   std::optional<Looks> seen;
   std::optional<UsualLooks> usual;  ///< what that was held against
   /// Of each witness, how much more likely its words are at a wrong pose than at a right one (its
@@ -46,7 +46,7 @@ class HealthMonitor {
 
  private:
   void remember(const Onset& onset, TimeNs t);
-  LogLikelihoods hear(const HealthInput& input, Health& health);
+  void hear(const HealthInput& input, Health& health);
   Verdict verdict(double p_wrong) const;
 
   MonitorConfig config_;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "holdfast/pipeline/methods/dual_index_localizer.hpp"
+#include "holdfast/pipeline/health/dual_index_localizer.hpp"
 #include "holdfast/pipeline/methods/feature_selection.hpp"
 #include "holdfast/pipeline/methods/graph_localizer.hpp"
 #include "holdfast/pipeline/methods/map_filter_method.hpp"

@@ -1,4 +1,4 @@
-#include "benchmarks/drives/region_scores.hpp"
+#include "benchmarks/scores/region_scores.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "benchmarks/drives/scan_census.hpp"
+#include "benchmarks/scores/scan_census.hpp"
 
 #include <gtest/gtest.h>
 

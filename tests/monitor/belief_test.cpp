@@ -1,4 +1,4 @@
-#include "holdfast/monitor/belief.hpp"
+#include "holdfast/monitor/evidence/belief.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ TEST(Belief, BeginsWithWhatTheConfigurationSays) {
 
 TEST(Belief, TheNewestScanCountsInFull) {
   Belief belief{BeliefConfig{}};
-  belief.hear(against(3));
+  belief.hear(against(3), {});
   EXPECT_NEAR(logit(belief.p_wrong()), logit(0.05) + 3, 1e-9);
 }
 
@@ -35,7 +35,7 @@ TEST(Belief, ARobotThatStandsDoesNotBecomeSurerByLookingAtTheSameView) {
   Belief belief(config);
   for (int i = 0; i < 50; ++i) {
     belief.pass(kScan, 0, {});
-    belief.hear(against(-1));
+    belief.hear(against(-1), {});
   }
   EXPECT_NEAR(logit(belief.p_wrong()), logit(0.05) - 1, 0.01);
 }
@@ -45,10 +45,10 @@ TEST(Belief, ARobotThatDrivesHearsSomethingNewEveryMetre) {
   config.news_after_s = 1000;
   config.wrong_per_s = config.found_again_per_s = 1e-12;
   Belief belief(config);
-  belief.hear(against(1));
+  belief.hear(against(1), {});
   for (int i = 0; i < 1000; ++i) {
     belief.pass(kScan, 0.01, {});
-    belief.hear(against(-0.2));
+    belief.hear(against(-0.2), {});
   }
   // 10 m of -0.2 each; the first scan's word is not forgotten, but it was of one place.
   EXPECT_NEAR(logit(belief.p_wrong()), logit(0.05) - 2.2 + 1, 0.1);
@@ -58,11 +58,11 @@ TEST(Belief, WhatWasSeenBeforeDoesNotHideThatTheRobotWasCarried) {
   Belief belief{BeliefConfig{}};
   for (int i = 0; i < 600; ++i) {
     belief.pass(kScan, 0.1, {});
-    belief.hear(against(-8));
+    belief.hear(against(-8), {});
   }
   ASSERT_LT(belief.p_wrong(), 1e-6);
   belief.pass(kScan, 0.1, {true, 0, 0});
-  belief.hear(against(3));
+  belief.hear(against(3), {});
   EXPECT_GT(belief.p_wrong(), 0.9);
 }
 
@@ -79,7 +79,7 @@ TEST(Belief, ProbabilitiesSumToOneWhateverIsSaid) {
   Belief belief{BeliefConfig{}};
   for (const double say : {0.0, 50.0, -800.0, 900.0, 1e-3}) {
     belief.pass(kScan, 0.3, {say > 0, 0, say > 100 ? 9.0 : -5.0});
-    belief.hear(against(say));
+    belief.hear(against(say), {});
     double sum = 0;
     for (std::size_t h = 0; h < kHypotheses; ++h) {
       const double p = belief.probability(static_cast<Hypothesis>(h));

@@ -6,12 +6,12 @@ namespace holdfast::monitor {
 namespace {
 
 constexpr TimeNs kScan = kSecond / 10;
-constexpr UsualLooks kCorridor{{0.8, 0.015, 0.0}, 30};
-constexpr Looks kAsUsual{0.8, 0.015, 0.0};
-constexpr Looks kInACrowd{0.35, 0.01, 0.08};
-constexpr Looks kTurnedAround{0.57, 0.08, 0.01};  // in the same corridor
-constexpr Looks kElsewhere{0.2, 0.25, 0.3};
-constexpr Looks kOffTheMap{0.0, 0.0, 1.0};
+constexpr UsualLooks kCorridor{0.92, 0.015, 0.0, 15};
+constexpr Looks kAsUsual{0.87, 0.92, 0.015, 0.0};
+constexpr Looks kInACrowd{0.75, 0.45, 0.01, 0.08};
+constexpr Looks kTurnedAround{0.64, 0.90, 0.08, 0.01};  // in the same corridor
+constexpr Looks kElsewhere{0.4, 0.5, 0.25, 0.3};
+constexpr Looks kOffTheMap{0.87, 0.0, 0.0, 1.0};
 
 /// A robot at 1 m/s, a scan every 0.1 s.
 class Drive {
@@ -33,8 +33,8 @@ class Drive {
   void drift_to(const Looks& from, const Looks& to) {
     for (int i = 0; i < 30; ++i) {
       const auto mix = [&](double a, double b) { return a + (b - a) * i / 30.0; };
-      scan(Looks{mix(from.agreeing, to.agreeing), mix(from.through, to.through),
-                 mix(from.unmapped, to.unmapped)});
+      scan(Looks{mix(from.fitting, to.fitting), mix(from.paired, to.paired),
+                 mix(from.through, to.through), mix(from.unmapped, to.unmapped)});
     }
   }
 
@@ -72,7 +72,7 @@ TEST(HealthMonitor, AKidnapIsNoticedByTheThirdScan) {
   for (const Looks& there : {kElsewhere, kTurnedAround}) {
     Drive drive;
     drive.drive(20, kAsUsual);
-    EXPECT_LE(drive.seconds_to_alarm(there), 0.2) << there.agreeing;
+    EXPECT_LE(drive.seconds_to_alarm(there), 0.2) << there.fitting;
   }
 }
 
@@ -123,9 +123,11 @@ TEST(HealthMonitor, FifteenSecondsWithoutScansAreNoReasonForAnAlarm) {
 TEST(HealthMonitor, AWayThatTheOdometryDidNotGoIsNoticedWhereTheScanDoesNotFitAsUsual) {
   Drive drive;
   drive.drive(10, kAsUsual);
-  drive.drift_to(kAsUsual, kInACrowd);
+  constexpr Looks worse{0.75, 0.85, 0.03, 0.02};
+  drive.drift_to(kAsUsual, worse);
+  drive.drive(5, worse);
   drive.way_ = 200;
-  EXPECT_LE(drive.seconds_to_alarm(kInACrowd), 3.0);
+  EXPECT_LE(drive.seconds_to_alarm(worse), 3.0);
 }
 
 TEST(HealthMonitor, APoseThatIsRightAgainIsBelievedAfterSomeSecondsOfWay) {
@@ -137,11 +139,11 @@ TEST(HealthMonitor, APoseThatIsRightAgainIsBelievedAfterSomeSecondsOfWay) {
 }
 
 TEST(HealthMonitor, WithoutTheMapsWordTheRunTellsWhatIsUsual) {
-  constexpr Looks poor{0.4, 0.05, 0.02};
+  constexpr Looks poor{0.82, 0.5, 0.05, 0.02};
   Drive drive(false);
   EXPECT_EQ(drive.drive(60, poor).verdict, Verdict::kHealthy);
-  EXPECT_NEAR(drive.scan(poor).usual->mean.agreeing, poor.agreeing, 0.05);
-  EXPECT_LE(drive.seconds_to_alarm(Looks{0.1, 0.25, 0.3}), 0.2);
+  EXPECT_NEAR(drive.scan(poor).usual->paired, poor.paired, 0.05);
+  EXPECT_LE(drive.seconds_to_alarm(Looks{0.4, 0.2, 0.25, 0.3}), 0.2);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "holdfast/monitor/hypotheses.hpp"
+#include "holdfast/monitor/evidence/hypotheses.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace holdfast::monitor {
 namespace {
 
-constexpr UsualLooks kRoom{{0.8, 0.02, 0.0}, 30};
+constexpr UsualLooks kRoom{0.92, 0.02, 0.0, 30};
 
 double of(const Testimony& testimony, Witness witness, Hypothesis hypothesis) {
   return testimony[static_cast<std::size_t>(witness)][static_cast<std::size_t>(hypothesis)];
@@ -16,17 +16,18 @@ double of(const Testimony& testimony, Witness witness, Hypothesis hypothesis) {
 double sum(const Looks& seen, Hypothesis hypothesis) {
   Testimony testimony{};
   testify(seen, kRoom, testimony);
-  return of(testimony, Witness::kAgreeing, hypothesis) +
+  return of(testimony, Witness::kFitting, hypothesis) +
+         of(testimony, Witness::kPaired, hypothesis) +
          of(testimony, Witness::kThrough, hypothesis) +
          of(testimony, Witness::kUnmapped, hypothesis);
 }
 
 TEST(Hypotheses, AShareIsBetaBinomialAboutWhatIsUsual) {
   Testimony testimony{};
-  testify({0.5, 0, 0}, {{0.5, 0, 0}, 2}, testimony);
+  testify({0, 0.5, 0, 0}, {0.5, 0, 0, 2}, testimony);
   // a = b = 1: each number of 30 is as likely, so that what is left without the number of ways to
   // choose 15 of 30 is B(16, 16) = 15! 15! / 31!.
-  EXPECT_NEAR(of(testimony, Witness::kAgreeing, Hypothesis::kUsual),
+  EXPECT_NEAR(of(testimony, Witness::kPaired, Hypothesis::kUsual),
               2 * std::lgamma(16.0) - std::lgamma(32.0), 1e-9);
 }
 
@@ -36,22 +37,22 @@ TEST(Hypotheses, EachIsTheLikeliestWhereItShouldBe) {
     Hypothesis hypothesis;
   };
   for (const auto& [seen, expected] : {
-           Case{{0.80, 0.02, 0.00}, Hypothesis::kUsual},
-           Case{{0.40, 0.01, 0.05}, Hypothesis::kCrowded},
-           Case{{0.40, 0.01, 0.50}, Hypothesis::kOutside},
-           Case{{0.75, 0.05, 0.03}, Hypothesis::kChanged},
-           Case{{0.30, 0.30, 0.10}, Hypothesis::kWrongStrange},
-           Case{{0.58, 0.11, 0.02}, Hypothesis::kWrongAlike},
+           Case{{0.87, 0.92, 0.02, 0.00}, Hypothesis::kUsual},
+           Case{{0.80, 0.50, 0.01, 0.10}, Hypothesis::kCrowded},
+           Case{{0.85, 0.46, 0.01, 0.50}, Hypothesis::kOutside},
+           Case{{0.85, 0.87, 0.05, 0.03}, Hypothesis::kChanged},
+           Case{{0.50, 0.60, 0.30, 0.10}, Hypothesis::kWrongStrange},
+           Case{{0.68, 0.83, 0.08, 0.02}, Hypothesis::kWrongAlike},
        }) {
     for (std::size_t h = 0; h < kHypotheses; ++h) {
       EXPECT_LE(sum(seen, static_cast<Hypothesis>(h)), sum(seen, expected) + 1e-12)
-          << seen.agreeing << ", hypothesis " << h;
+          << seen.fitting << ", hypothesis " << h;
     }
   }
 }
 
 TEST(Hypotheses, OutsideOfTheMapNothingTellsRightFromWrong) {
-  for (const Looks seen : {Looks{0, 0, 1}, Looks{0.3, 0.01, 0.6}}) {
+  for (const Looks seen : {Looks{0, 0, 0, 1}, Looks{0.8, 0.4, 0.01, 0.6}}) {
     EXPECT_DOUBLE_EQ(sum(seen, Hypothesis::kOutside), sum(seen, Hypothesis::kWrongOutside));
   }
 }

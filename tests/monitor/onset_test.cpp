@@ -1,4 +1,4 @@
-#include "holdfast/monitor/onset.hpp"
+#include "holdfast/monitor/evidence/onset.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,9 +33,7 @@ TEST(Onset, NoiseSpeaksAgainstItAndAGreatDropForIt) {
   EXPECT_GT(after({0.8, 0.6, 0.4}).log_ratio, after({0.8, 0.7, 0.6}).log_ratio);
 }
 
-TEST(Onset, ARiseIsNone) {
-  EXPECT_LE(after({0.3, 0.5, 0.8}).log_ratio, 0);
-}
+TEST(Onset, ARiseIsNone) { EXPECT_LE(after({0.3, 0.5, 0.8}).log_ratio, 0); }
 
 TEST(Onset, WhatHappensInADarkSecondIsNotSudden) {
   OnsetWatch watch;

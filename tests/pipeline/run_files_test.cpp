@@ -189,6 +189,28 @@ TEST(RunFiles, EventsAreWrittenWhenTheStateChangesOnly) {
   EXPECT_EQ(events[0].find("{\"t\":1700000000.223456788,"), 0U) << events[0];
 }
 
+TEST(RunFiles, AnAlarmIsWrittenOnceWithItsEvidence) {
+  const ScratchFolder folder;
+  const fs::path run = folder.path() / "run";
+  StepReport alarm = report(1, State::kSuspect, "the pose may be wrong");
+  alarm.alarm = true;
+  alarm.p_wrong = 0.25;
+  alarm.evidence = {{"through", 2.5, "rays through walls of the map: 31 %, usually 2 %"},
+                    {"way", -0.5, "..."}};
+  StepReport later = alarm;
+  later.pose_time += kSecond / 10;
+  write_run(run, {report(0, State::kTracking), alarm, later});
+  const auto events = lines(read(run / "events.jsonl"));
+  ASSERT_EQ(events.size(), 3U);
+  const auto event = nlohmann::json::parse(events[2]);
+  EXPECT_EQ(event["event"], "alarm");
+  EXPECT_EQ(event["reason"], "the pose may be wrong");
+  EXPECT_EQ(event["p_wrong"], 0.25);
+  ASSERT_EQ(event["evidence"].size(), 2U);
+  EXPECT_EQ(event["evidence"][0]["witness"], "through");
+  EXPECT_EQ(event["evidence"][0]["log_ratio"], 2.5);
+}
+
 TEST(RunFiles, WithoutACommitNothingIsLeft) {
   const ScratchFolder folder;
   {

@@ -10,7 +10,7 @@
 #include "holdfast/filter/matching/patch_error.hpp"
 #include "holdfast/filter/matching/point_demand.hpp"
 #include "holdfast/filter/matching/scan_match.hpp"
-#include "holdfast/pipeline/methods/map_health.hpp"
+#include "holdfast/pipeline/health/map_health.hpp"
 #include "holdfast/pipeline/methods/odometry_witness.hpp"
 #include "holdfast/pipeline/methods/scan_localizer.hpp"
 

@@ -1,4 +1,4 @@
-#include "holdfast/pipeline/methods/dual_index_localizer.hpp"
+#include "holdfast/pipeline/health/dual_index_localizer.hpp"
 
 #include <fmt/format.h>
 

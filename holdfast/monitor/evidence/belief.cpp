@@ -1,4 +1,4 @@
-#include "holdfast/monitor/belief.hpp"
+#include "holdfast/monitor/evidence/belief.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@ using Probabilities = std::array<double, kHypotheses>;
 constexpr Probabilities kKinds = {0.84, 0.03, 0.06, 0.07, 0.6, 0.33, 0.07};
 constexpr double kOtherKindPerS = 0.02;
 constexpr double kBrokeInACrowd = 0.99;  // of the breaks in a crowd: the people's doing
+constexpr double kNewsOfWay = 0.2;       // a way of some metres is new after some metres
 constexpr double kLeast = 1e-30;
 
 Probabilities with_wrong(double wrong) {
@@ -83,9 +84,9 @@ double Belief::p_carried(double seconds, const Onset& onset) const {
   return weighed(expected, onset.log_ratio);
 }
 
-void Belief::hear(const LogLikelihoods& testimony) {
-  now_ = weighed(history_, testimony, 1.0);
-  history_ = weighed(history_, testimony, news_);
+void Belief::hear(const LogLikelihoods& scene, const LogLikelihoods& way) {
+  now_ = weighed(weighed(history_, scene, 1.0), way, 1.0);
+  history_ = weighed(weighed(history_, scene, news_), way, kNewsOfWay * news_);
 }
 
 double Belief::p_wrong() const { return sum_of_wrong(now_); }

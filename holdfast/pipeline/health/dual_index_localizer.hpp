@@ -12,7 +12,8 @@ namespace holdfast::pipeline {
 /// search it stays so until as many scans in a row as confirm an anomaly are no candidates.
 class DualIndexLocalizer : public ScanLocalizer {
  public:
-  DualIndexLocalizer(std::unique_ptr<ScanLocalizer> localizer, const monitor::DualIndexConfig& config)
+  DualIndexLocalizer(std::unique_ptr<ScanLocalizer> localizer,
+                     const monitor::DualIndexConfig& config)
       : localizer_(std::move(localizer)), config_(config), detector_(config) {}
 
   void add_imu(const ImuSample& sample) override { localizer_->add_imu(sample); }

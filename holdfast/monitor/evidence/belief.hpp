@@ -1,8 +1,8 @@
 #pragma once
 
 #include "holdfast/core/fields.hpp"
-#include "holdfast/monitor/hypotheses.hpp"
-#include "holdfast/monitor/onset.hpp"
+#include "holdfast/monitor/evidence/hypotheses.hpp"
+#include "holdfast/monitor/evidence/onset.hpp"
 
 namespace holdfast::monitor {
 
@@ -22,8 +22,9 @@ struct BeliefConfig {
     visit("wrong_per_s", self.wrong_per_s,
           FieldDoc{"probability that a pose becomes wrong in a second (1e-4: once in three hours)",
                    1e-12, 0.1});
-    visit("wrong_after_break", self.wrong_after_break,
-          FieldDoc{"probability that the robot was carried, where the odometry says so", 1e-6, 0.99});
+    visit(
+        "wrong_after_break", self.wrong_after_break,
+        FieldDoc{"probability that the robot was carried, where the odometry says so", 1e-6, 0.99});
     visit("found_again_per_s", self.found_again_per_s,
           FieldDoc{"probability that a wrong pose becomes right in a second without a search", 1e-9,
                    0.1});
@@ -45,8 +46,9 @@ class Belief {
 
   /// Time passes, and way, with what may be a sign that the robot was carried.
   void pass(double seconds, double way_m, const Onset& onset);
-  /// What the newest scan says.
-  void hear(const LogLikelihoods& testimony);
+  /// What the newest scan says: of the scene, and of the way of the last seconds. The way is news
+  /// only once all of it is new.
+  void hear(const LogLikelihoods& scene, const LogLikelihoods& way);
 
   double probability(Hypothesis hypothesis) const {
     return now_[static_cast<std::size_t>(hypothesis)];

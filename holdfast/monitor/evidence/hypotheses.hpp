@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "holdfast/monitor/looks.hpp"
+#include "holdfast/monitor/evidence/looks.hpp"
 
 namespace holdfast::monitor {
 
@@ -30,8 +30,8 @@ constexpr bool is_wrong(std::size_t hypothesis) {
 using LogLikelihoods = std::array<double, kHypotheses>;
 
 /// The witnesses whose words count, in the order of Testimony.
-enum class Witness : std::uint8_t { kAgreeing, kThrough, kUnmapped, kWay };
-inline constexpr std::array<std::string_view, 4> kWitnessNames = {"agreeing", "through",
+enum class Witness : std::uint8_t { kFitting, kPaired, kThrough, kUnmapped, kWay };
+inline constexpr std::array<std::string_view, 5> kWitnessNames = {"fitting", "paired", "through",
                                                                   "unmapped", "way"};
 
 /// What each witness says of each hypothesis.
@@ -40,7 +40,7 @@ using Testimony = std::array<LogLikelihoods, kWitnessNames.size()>;
 /// Likelihoods of a scan's shares. Each share is taken for kIndependentLooks looks, however many
 /// thousand points it was made from: neighbours hit the same wall, and err together. Their number
 /// is beta-binomial about what the hypothesis expects at this place; how narrow is a matter of how
-/// alike places of that kind are (docs/decisions/0008).
+/// alike places of that kind are (docs/decisions/0009).
 void testify(const Looks& seen, const UsualLooks& usual, Testimony& testimony);
 
 /// Likelihood of the squared Mahalanobis distance (6 degrees of freedom) between the way that the

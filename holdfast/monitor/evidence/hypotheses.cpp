@@ -1,4 +1,4 @@
-#include "holdfast/monitor/hypotheses.hpp"
+#include "holdfast/monitor/evidence/hypotheses.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,9 +21,9 @@ struct Expected {
   double worth = 0;
 };
 
-/// What a hypothesis expects of the three shares.
+/// What a hypothesis expects of the shares.
 struct Expectation {
-  Expected agreeing, through, unmapped;
+  Expected fitting, paired, through, unmapped;
 };
 
 /// `share` of what is usual (or more), for a hypothesis that is worth `worth` looks itself: no
@@ -35,36 +35,36 @@ Expected about(double mean, double worth, const UsualLooks& usual) {
 double log_beta(double a, double b) { return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b); }
 
 /// Beta-binomial, without the number of ways to choose, which is the same for all hypotheses.
-double log_likelihood(double share, const Expected& expected) {
+double log_likelihood(double share, double looks, const Expected& expected) {
   const double mean = std::clamp(expected.mean, kLeastRate, 1.0 - kLeastRate);
   const double a = mean * expected.worth;
   const double b = (1.0 - mean) * expected.worth;
-  const double seen = share * kIndependentLooks;
-  return log_beta(seen + a, kIndependentLooks - seen + b) - log_beta(a, b);
+  const double seen = share * looks;
+  return log_beta(seen + a, looks - seen + b) - log_beta(a, b);
 }
 
 /// Crowds hide, and are no walls: rays that end early cannot pass through more than usual. Changes
 /// open and close some ways, and leave most as it is. At the border of the map and beyond, what it
 /// has agrees as usual. At a wrong pose rays end anywhere.
 Expectation expectation(Hypothesis hypothesis, const Looks& seen, const UsualLooks& usual) {
-  const auto& [agreeing, through, unmapped] = usual.mean;
-  const auto near = [&](double mean, double worth) { return about(mean, worth, usual); };
+  const auto& [paired, through, unmapped, worth] = usual;
+  const auto near = [&](double mean, double its_worth) { return about(mean, its_worth, usual); };
   switch (hypothesis) {
     case Hypothesis::kUsual:
-      return {{agreeing, usual.worth}, {through, usual.worth}, {unmapped, usual.worth}};
+      return {{kUsualFitting, 40}, {paired, worth}, {through, worth}, {unmapped, worth}};
     case Hypothesis::kChanged:
-      return {near(0.9 * agreeing, 60), near(through + 0.03, 30), near(unmapped + 0.03, 30)};
+      return {
+          {0.85, 30}, near(0.95 * paired, 60), near(through + 0.03, 30), near(unmapped + 0.03, 30)};
     case Hypothesis::kCrowded:
-      return {near(0.65 * agreeing, 8), {through, usual.worth}, near(unmapped + 0.1, 6)};
-    case Hypothesis::kWrongStrange:
-      return {near(0.45 * agreeing, 8), {0.2, 4}, {0.33, 2}};
+      return {{0.65, 5}, near(0.7 * paired, 8), {through, worth}, near(unmapped + 0.1, 6)};
+    case Hypothesis::kWrongStrange: return {{0.6, 5}, near(0.6 * paired, 8), {0.2, 4}, {0.33, 2}};
     case Hypothesis::kWrongAlike:
-      return {near(0.75 * agreeing, 60), near(through + 0.05, 60), near(unmapped + 0.03, 60)};
+      return {
+          {0.7, 20}, near(0.9 * paired, 60), near(through + 0.05, 60), near(unmapped + 0.03, 60)};
     case Hypothesis::kOutside:
-    case Hypothesis::kWrongOutside:
-      break;
+    case Hypothesis::kWrongOutside: break;
   }
-  return {near((1.0 - seen.unmapped) * agreeing, 20), near(through, 60), {0.5, 2}};
+  return {{0.85, 20}, near((1.0 - seen.unmapped) * paired, 20), near(through, 60), {0.5, 2}};
 }
 
 /// Of a chi-square variable with 6 degrees of freedom.
@@ -79,14 +79,16 @@ double log_sum(double a, double b) {
 }  // namespace
 
 void testify(const Looks& seen, const UsualLooks& usual, Testimony& testimony) {
+  const auto of = [&](Witness witness) -> LogLikelihoods& {
+    return testimony[static_cast<std::size_t>(witness)];
+  };
   for (std::size_t h = 0; h < kHypotheses; ++h) {
     const Expectation e = expectation(static_cast<Hypothesis>(h), seen, usual);
-    testimony[static_cast<std::size_t>(Witness::kAgreeing)][h] =
-        log_likelihood(seen.agreeing, e.agreeing);
-    testimony[static_cast<std::size_t>(Witness::kThrough)][h] =
-        log_likelihood(seen.through, e.through);
-    testimony[static_cast<std::size_t>(Witness::kUnmapped)][h] =
-        log_likelihood(seen.unmapped, e.unmapped);
+    of(Witness::kFitting)[h] =
+        log_likelihood(seen.fitting, seen.paired * kIndependentLooks, e.fitting);
+    of(Witness::kPaired)[h] = log_likelihood(seen.paired, kIndependentLooks, e.paired);
+    of(Witness::kThrough)[h] = log_likelihood(seen.through, kIndependentLooks, e.through);
+    of(Witness::kUnmapped)[h] = log_likelihood(seen.unmapped, kIndependentLooks, e.unmapped);
   }
 }
 
@@ -95,7 +97,8 @@ void testify_way(double squared_distance, Testimony& testimony) {
   const double x = std::clamp(squared_distance, kExpectedDistance, kLargestDistance);
   const double consistent = log_chi_square_6(x);
   // Of any size, but none that would be expected anyway: such a one proves nothing.
-  const double anything = std::log((1.0 - kExpectedDistance / x) / (x * std::log(kLargestDistance)));
+  const double anything =
+      std::log((1.0 - kExpectedDistance / x) / (x * std::log(kLargestDistance)));
   LogLikelihoods& way = testimony[static_cast<std::size_t>(Witness::kWay)];
   for (std::size_t h = 0; h < kHypotheses; ++h) {
     const bool crowded = h == static_cast<std::size_t>(Hypothesis::kCrowded);

@@ -1,4 +1,4 @@
-#include "holdfast/pipeline/methods/map_health.hpp"
+#include "holdfast/pipeline/health/map_health.hpp"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@ using monitor::Verdict;
 
 // Beyond these a claim misleads.
 constexpr double kWrongM = 0.5;
-constexpr double kReachM = 6.0;       // of a place: twice the way to the next one
-constexpr double kPlaceWorth = 30.0;  // looks: how far a place tells what is usual near it
+constexpr double kReachM = 6.0;         // of a place: twice the way to the next one
+constexpr double kPlaceWorth = 15.0;    // looks: how far a place tells what is usual near it
 constexpr double kBreakLogRatio = 9.0;  // even chances, where they were one in ten thousand
 constexpr double kWrongRad = 5.0 * std::numbers::pi / 180.0;
 
@@ -36,16 +36,17 @@ std::string percent(double seen, double usual) {
 
 std::string words(monitor::Witness witness, const Health& health) {
   const monitor::Looks seen = health.seen.value_or(monitor::Looks{});
-  const monitor::Looks usual = health.usual.value_or(monitor::UsualLooks{}).mean;
+  const monitor::UsualLooks usual = health.usual.value_or(monitor::UsualLooks{});
   switch (witness) {
-    case monitor::Witness::kAgreeing:
-      return "returns that agree with the map: " + percent(seen.agreeing, usual.agreeing);
+    case monitor::Witness::kFitting:
+      return "how well paired returns fit: " + percent(seen.fitting, monitor::kUsualFitting);
+    case monitor::Witness::kPaired:
+      return "returns near a surface of the map: " + percent(seen.paired, usual.paired);
     case monitor::Witness::kThrough:
       return "rays through walls of the map: " + percent(seen.through, usual.through);
     case monitor::Witness::kUnmapped:
       return "returns where the map has nothing: " + percent(seen.unmapped, usual.unmapped);
-    case monitor::Witness::kWay:
-      break;
+    case monitor::Witness::kWay: break;
   }
   return "the odometry went another way than the poses in the map";
 }
@@ -71,7 +72,8 @@ std::vector<Evidence> evidence(const Health& health) {
 }
 
 std::string reason(const Health& health, const std::vector<Evidence>& evidence) {
-  const char* what = health.verdict == Verdict::kLost ? "the pose is wrong" : "the pose may be wrong";
+  const char* what =
+      health.verdict == Verdict::kLost ? "the pose is wrong" : "the pose may be wrong";
   if (evidence.empty()) return what;
   return fmt::format("{}: {}", what, evidence.front().text);
 }
@@ -106,10 +108,10 @@ void MapHealth::judge(const SceneView& scene, StepReport& report) {
 std::optional<monitor::UsualLooks> MapHealth::usual(const Eigen::Vector3d& p_map_lidar) const {
   const places::Place* place = places_ ? places_->nearest(p_map_lidar, kReachM) : nullptr;
   if (place == nullptr) return std::nullopt;
-  const double short_of_walls = std::max(1e-3, 1.0 - static_cast<double>(place->through_share));
+  const double through = static_cast<double>(place->through_share);
   return monitor::UsualLooks{
-      {place->agreeing_share, place->through_share, place->unmapped_share / short_of_walls},
-      kPlaceWorth};
+      std::min(1.0, static_cast<double>(place->agreeing_share) / monitor::kUsualFitting), through,
+      static_cast<double>(place->unmapped_share) / std::max(1e-3, 1.0 - through), kPlaceWorth};
 }
 
 std::optional<monitor::Looks> MapHealth::look(const SceneView& scene, const StepReport& report) {
@@ -124,7 +126,9 @@ std::optional<monitor::Looks> MapHealth::look(const SceneView& scene, const Step
   for (std::size_t i = 0; i < count; i += step) {
     lines_.push_back({from, R * scene.points.points[i] + p});
   }
-  return monitor::Looks::of(report.inlier_share, monitor::follow(scene.map, lines_, {}));
+  const auto points = static_cast<double>(count);
+  return monitor::looks_of(report.inlier_share * points, report.matches, points,
+                           monitor::follow(scene.map, lines_, {}));
 }
 
 }  // namespace holdfast::pipeline

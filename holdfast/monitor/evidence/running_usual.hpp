@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "holdfast/monitor/looks.hpp"
+#include "holdfast/monitor/evidence/looks.hpp"
 
 namespace holdfast::monitor {
 
@@ -18,7 +18,7 @@ class RunningUsual {
 
  private:
   int scans_ = 0;
-  Looks mean_;
+  UsualLooks mean_{0, 0, 0, 15};  ///< the next place may be another sort
 };
 
 }  // namespace holdfast::monitor

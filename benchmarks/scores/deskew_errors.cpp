@@ -1,4 +1,4 @@
-#include "benchmarks/benches/deskew_errors.hpp"
+#include "benchmarks/scores/deskew_errors.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
