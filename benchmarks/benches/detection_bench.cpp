@@ -157,7 +157,7 @@ void sweep(const Drives& drives, BenchReport& report) {
       report.data["sweep"].push_back({{"alpha", alpha}, {"jump_m", jump_m}, {"score", json_of(s)}});
     }
   }
-  report.markdown += "\n" + table.markdown();
+  report.markdown += fmt::format("\n{}", table.markdown());
 }
 
 /// Of the scans with a probability between two limits, which share was wrong?
@@ -185,7 +185,7 @@ void reliability(const Drives& drives, BenchReport& report) {
                                           {"mean_told", told},
                                           {"wrong", wrong[bin].count}});
   }
-  report.markdown += "\n" + table.markdown();
+  report.markdown += fmt::format("\n{}", table.markdown());
 }
 
 Result<std::vector<Place>> places_of(const BenchOptions& options) {

@@ -84,10 +84,10 @@ void MapHealth::judge(const SceneView& scene, StepReport& report) {
   monitor::HealthInput input;
   input.t = report.pose_time;
   input.way_m = before_ ? (report.T_map_body.translation - before_->translation).norm() : 0.0;
-  input.odometry_broke = scene.odometry_broke;
+  input.odometry_broke = scene.odometry.broke;
   input.looks = look(scene, report);
   input.usual = usual(report.T_map_body * scene.p_body_lidar);
-  input.way_squared_distance = scene.way_squared_distance;
+  input.way_squared_distance = scene.odometry.way_squared_distance;
   before_ = report.T_map_body;
   const Health health = monitor_.judge(input);
   report.p_wrong = p_wrong(health, report);

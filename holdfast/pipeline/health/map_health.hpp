@@ -17,8 +17,12 @@ struct SceneView {
   const map::PriorMap& map;
   const registration::BodyPoints& points;  ///< of the scan, in the body frame; empty: no returns
   Eigen::Vector3d p_body_lidar;
-  bool odometry_broke = false;
-  std::optional<double> way_squared_distance;
+  /// What the odometry beside it says, if there is one.
+  struct Odometry {
+    bool broke = false;
+    std::optional<double> way_squared_distance;
+  };
+  Odometry odometry = {};
 };
 
 /// The bridge from a localizer with a map to the monitor: follows some of the scan's rays through

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "holdfast/filter/account.hpp"
+#include "holdfast/pipeline/methods/graph_states.hpp"
 #include "holdfast/registration/degeneracy.hpp"
 
 namespace holdfast::pipeline {
@@ -25,18 +26,6 @@ constexpr double kMostlyMapped = 0.5;      // share of returns; below, an odomet
 constexpr double kHardlyMapped = 0.2;      // below, this is outside of the map
 constexpr double kFewToldInflation = 2.0;  // of the variance (docs/decisions/0004)
 constexpr double kMostScansAlike = 30;     // of the same part of the map, however slow the robot
-
-NodeState node_of(const filter::FilterState& s, const Eigen::Vector3d& gravity) {
-  return {s.t, s.T_map_body, s.v_map, s.accel_bias, s.gyro_bias, gravity};
-}
-
-filter::FilterState filter_state_of(const NodeState& x, const Matrix18d& P) {
-  return {x.t, x.T_map_body, x.v_map, x.accel_bias, x.gyro_bias, P.topLeftCorner<15, 15>()};
-}
-
-filter::MatchState match_state_of(const NodeState& x) {
-  return {x.T_map_body, x.v_map, x.accel_bias, x.gyro_bias, x.gravity_map};
-}
 
 }  // namespace
 
@@ -144,7 +133,6 @@ void GraphLocalizer::step(const Scan& scan, StageClock& clock, StepReport& repor
   estimate_map_error(found);
   describe(found, report);
   judge(found, report);
-  if (scan_.selected.empty()) work_.points.resize(0);
   ask_monitor(*map_, work_.points, report);
   imu_.drop_before(scan.end_time - kImuMemory);
 }
@@ -215,7 +203,9 @@ void GraphLocalizer::restore_biases() {
 
 GraphLocalizer::Match GraphLocalizer::match(const NodeState& predicted, StageClock& clock) {
   Match found;
-  if (!scan_.selected.empty()) {
+  if (scan_.selected.empty()) {
+    work_.points.resize(0);
+  } else {
     found = match_finely(options(), clock);
     const double sigma = filter::largest_sigma(smoother_.covariance_of_prediction(), NodeState::kP);
     if (sigma > kCoarseFromM) {
@@ -373,9 +363,7 @@ void GraphLocalizer::describe(const Match& match, StepReport& report) const {
 }
 
 void GraphLocalizer::judge(const Match& match, StepReport& report) {
-  if (witness_ && match.usable) {
-    witness_->compare({report.T_map_body, report.pose_covariance});
-  }
+  if (witness_ && match.usable) witness_->compare({report.T_map_body, report.pose_covariance});
   if (report.sigma_trans_m > setup_.start.filter.lost_sigma_m) {
     report.state = State::kLost;
     report.reason = "too long without a scan that fits the map";
@@ -396,9 +384,9 @@ void GraphLocalizer::judge(const Match& match, StepReport& report) {
 void GraphLocalizer::ask_monitor(const map::PriorMap& map, const registration::BodyPoints& points,
                                  StepReport& report) {
   if (!health_) return;
-  health_->judge({map, points, scan_.T_body_lidar.translation, witness_ && witness_->broke(),
-                  witness_ ? witness_->way_squared_distance() : std::nullopt},
-                 report);
+  SceneView scene{map, points, scan_.T_body_lidar.translation};
+  if (witness_) scene.odometry = {witness_->broke(), witness_->way_squared_distance()};
+  health_->judge(scene, report);
 }
 
 }  // namespace holdfast::pipeline
