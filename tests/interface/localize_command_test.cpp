@@ -184,7 +184,7 @@ TEST_F(LocalizeCommand, ADamagedMapIsAnErrorThatNamesTheFile) {
   const auto arguments = "localize " + drive->log + " --map " + map + " --out " + out / "run" +
                          " --initial-pose \"" + drive->pose + "\"";
   std::string newer = yaml;
-  newer.replace(newer.find("format_version: 1"), 17, "format_version: 9");
+  newer.replace(newer.find("format_version: 2"), 17, "format_version: 9");
   put(map + "/map.yaml", newer);
   expect_run(arguments, 1, "format_version 9");
   put(map + "/map.yaml", yaml.substr(0, yaml.size() / 2));
