@@ -46,7 +46,8 @@ Alarms alarms_by_dual_index(const MonitoredDrive& drive, const monitor::DualInde
 void DetectionScore::add(const MonitoredDrive& drive, const Alarms& alarms) {
   const std::size_t begin = first_wrong(drive);
   const std::size_t count = drive.scans.size();
-  const TimeNs wrong_from = begin < count ? drive.scans[begin].t : drive.scans.back().t + 2 * kEarly;
+  const TimeNs wrong_from =
+      begin < count ? drive.scans[begin].t : drive.scans.back().t + 2 * kEarly;
   for (std::size_t i = 0; i < begin; ++i) {
     right_s += step_s(drive, i);
     const bool raised = alarms[i] && (i == 0 || !alarms[i - 1]);

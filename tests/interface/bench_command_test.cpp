@@ -23,12 +23,12 @@ TEST(BenchCommand, WritesTheTableThatItPrints) {
 }
 
 TEST(BenchCommand, DetectionJudgesBothDetectorsOnTheSameDrives) {
-  const auto run = run_program("bench detection --scenario office --duration 10 --seeds 1:1 --out " +
-                               scratch());
+  const auto run =
+      run_program("bench detection --scenario office --duration 10 --seeds 1:1 --out " + scratch());
   EXPECT_EQ(run.exit_code, 0) << run.out;
-  for (const char* row : {"| quiet, evidence ", "| kidnap, evidence ", "| kidnap, dual index ",
-                          "| evidence, p >= 0.5 ", "| dual index, alpha 2, d_th 0.5 m ",
-                          "| 0.9 to 1 "}) {
+  for (const char* row :
+       {"| quiet, evidence ", "| kidnap, evidence ", "| kidnap, dual index ",
+        "| evidence, p >= 0.5 ", "| dual index, alpha 2, d_th 0.5 m ", "| 0.9 to 1 "}) {
     EXPECT_NE(run.out.find(row), std::string::npos) << row << " in\n" << run.out;
   }
   EXPECT_TRUE(std::filesystem::exists(scratch() + "/detection.json"));
@@ -38,7 +38,8 @@ TEST(BenchCommand, DetectionJudgesBothDetectorsOnTheSameDrives) {
 TEST(BenchCommand, NamesTheBenchesWhenAskedForAnotherOne) {
   const auto run = run_program("bench speed --out " + scratch());
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.out.find("step, accuracy, scenarios, detection, regions, import"), std::string::npos)
+  EXPECT_NE(run.out.find("step, accuracy, scenarios, detection, regions, import"),
+            std::string::npos)
       << run.out;
   EXPECT_FALSE(std::filesystem::exists(scratch()));
 }
