@@ -9,8 +9,11 @@
 namespace holdfast::testing {
 namespace {
 
+/// A folder of the test that runs: others may run beside it.
 std::string scratch() {
-  return (std::filesystem::temp_directory_path() / "holdfast_bench_command_test").string();
+  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+  return (std::filesystem::temp_directory_path() / "holdfast_bench_command_test").string() + "_" +
+         test->name();
 }
 
 TEST(BenchCommand, WritesTheTableThatItPrints) {
