@@ -9,7 +9,7 @@ namespace holdfast::monitor {
 
 struct MonitorConfig {
   std::string method = "evidence";
-  double suspect_p = 0.5;
+  double suspect_p = 0.2;
   double lost_p = 0.9;
   int rays = 120;
   BeliefConfig belief;
@@ -22,7 +22,10 @@ struct MonitorConfig {
                    "residuals and jumps (dual_index: article 3.4.1), or not at all (off)",
                    -kAny, kAny, "evidence|dual_index|off"});
     visit("suspect_p", self.suspect_p,
-          FieldDoc{"probability that the pose is wrong, from which it is SUSPECT", 1e-6, 1.0});
+          FieldDoc{
+              "probability that the pose is wrong, from which it is SUSPECT (1 / 5: a wrong claim "
+              "costs four times as much as none)",
+              1e-6, 1.0});
     visit("lost_p", self.lost_p,
           FieldDoc{"from which it is LOST, until it is below suspect_p again", 1e-6, 1.0});
     visit("rays", self.rays,
