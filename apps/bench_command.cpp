@@ -76,7 +76,8 @@ void add_bench_command(CLI::App& app) {
       ->allow_extra_args(false);
   command
       ->add_option("--scenario", args->scenarios,
-                   "only this one; repeatable (bench scenarios, features; see simulate --list)")
+                   "only this one; repeatable (bench scenarios, features, detection; see simulate "
+                   "--list)")
       ->type_name("NAME")
       ->take_all()
       ->allow_extra_args(false);

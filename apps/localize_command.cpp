@@ -36,6 +36,10 @@ void print_result(const pipeline::RunSummary& summary, const Arguments& args) {
   fmt::print("{} scans in {:.1f} s, {:.1f} % tracked, {} with a pose; {:.2f} ms a scan (median)\n",
              summary.scans(), summary.seconds(), share(State::kTracking) + share(State::kDegraded),
              summary.claimed(), summary.median_step_ms());
+  if (summary.claimed() == 0) {
+    fmt::print("no pose was found: {}/events.jsonl tells of each search and its candidates\n",
+               args.out);
+  }
   fmt::print("run written to {}{}\n", args.out,
              args.no_report ? "" : fmt::format("; look at {}/report.html", args.out));
 }
@@ -87,7 +91,7 @@ void add_localize_command(CLI::App& app) {
       ->required();
   command->add_option("--initial-pose", args->initial_pose,
                       "\"x y z qx qy qz qw\": T_map_body at the end of the first scan, good to 1 m "
-                      "and 10 degrees");
+                      "and 10 degrees; without it the map is searched for the pose");
   command->add_option("--method", args->method, "localizer: graph or map_filter");
   command->add_option("--truth", args->truth, "true trajectory (TUM): the report shows errors");
   command->add_option("--events", args->events,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,9 +59,11 @@ struct StageTimes {
   }
 };
 
+struct SearchSummary;
+
 /// What one witness says of the pose.
 struct Evidence {
-  std::string_view witness;  ///< "agreeing", "through", "unmapped", "way", "break", ...
+  std::string_view witness;  ///< "fitting", "paired", "through", "unmapped", "way", "sudden", ...
   double log_ratio = 0;      ///< ln of how much more likely it is at a wrong pose; > 0: against it
   std::string text;          ///< in a few words, with figures
 };
@@ -86,6 +89,7 @@ struct StepReport {
   /// the right (rad)]; the two sigmas above are of its diagonal blocks. Zero: not estimated.
   Eigen::Matrix<double, 6, 6> pose_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int odom_epoch = 0;
+  std::shared_ptr<const SearchSummary> search;  ///< of the map, that ended with this step
   TimeNs imu_held_ns = 0;  ///< part of the step for which the last IMU reading was held
   StageTimes times;
 };

@@ -67,6 +67,8 @@ class Odometry {
   /// In the odometry's frame, m/s^2; along -z but for the error of the first levelling.
   const Eigen::Vector3d& gravity() const { return gravity_.value(); }
   const LocalMap& map() const { return map_; }
+  /// Of the newest scan, in the body frame at its end.
+  const registration::BodyPoints& points() const { return work_.points; }
   const preprocess::ImuBuffer& imu() const { return imu_; }
 
  private:

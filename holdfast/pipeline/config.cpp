@@ -20,6 +20,8 @@ std::vector<io::FieldRef> fields_of(Config& config) {
   io::collect_fields("monitor", config.monitor, fields);
   io::collect_fields("monitor.belief", config.monitor.belief, fields);
   io::collect_fields("monitor.dual_index", config.dual_index, fields);
+  io::collect_fields("relocalization", config.relocalization, fields);
+  io::collect_fields("relocalization.search", config.search, fields);
   return fields;
 }
 

@@ -12,8 +12,10 @@
 #include "holdfast/monitor/monitor_config.hpp"
 #include "holdfast/odometry/odometry_config.hpp"
 #include "holdfast/pipeline/methods/graph_localizer.hpp"
+#include "holdfast/pipeline/recovery/relocalization_config.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 #include "holdfast/registration/fit_at_query.hpp"
+#include "holdfast/relocalization/search_config.hpp"
 
 namespace holdfast::pipeline {
 
@@ -65,6 +67,8 @@ struct Config {
   odometry::LocalMapConfig local_map;
   monitor::MonitorConfig monitor;
   monitor::DualIndexConfig dual_index;
+  RelocalizationConfig relocalization;
+  relocalization::SearchConfig search;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -16,7 +16,8 @@ namespace holdfast::pipeline {
 class Localizer {
  public:
   /// `T_map_body` is the pose at the first scan's last point, to within Config::start. Without it
-  /// there is no search yet that could find it: an error that says so.
+  /// the map is searched for it, which only `method: graph` can, with its odometry on and in a map
+  /// that has places.
   static Result<Localizer> create(const Config& config, map::PriorMap map,
                                   const std::optional<SE3>& T_map_body, int threads = 1);
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "holdfast/core/search_summary.hpp"
 #include "holdfast/io/tum_file.hpp"
 
 namespace holdfast::pipeline {
@@ -72,6 +73,7 @@ Status RunFiles::add(const StepReport& report) {
   steps_ << format_step(report) << '\n';
   if (!any_ || report.state != last_state_) add_status(report);
   if (report.alarm && !alarm_) add_alarm(report);
+  if (report.search) add_search(report);
   any_ = true;
   last_state_ = report.state;
   alarm_ = report.alarm;
@@ -101,6 +103,36 @@ void RunFiles::add_alarm(const StepReport& report) {
                                 {"text", evidence.text}});
   }
   add_event(report.pose_time, rest);
+}
+
+/// "search" tells all of it; "relocalized", that its pose was taken over.
+void RunFiles::add_search(const StepReport& report) {
+  const SearchSummary& search = *report.search;
+  nlohmann::ordered_json rest;
+  rest["event"] = "search";
+  rest["outcome"] = search.outcome;
+  rest["reason"] = search.reason;
+  rest["accepted"] = search.accepted;
+  rest["scans"] = search.scans;
+  rest["began_s_ago"] = to_seconds(report.pose_time - search.t);
+  rest["latency_s"] = search.latency_s;
+  rest["cpu_ms"] = search.cpu_ms;
+  rest["work"] = search.work;
+  rest["candidates"] = nlohmann::ordered_json::array();
+  for (const SearchSummary::Candidate& c : search.candidates) {
+    const auto& p = c.T_map_body.translation;
+    const auto& q = c.T_map_body.rotation;
+    rest["candidates"].push_back({{"pose", {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}},
+                                  {"score", c.score},
+                                  {"agreeing", c.agreeing},
+                                  {"probability", c.probability}});
+  }
+  add_event(report.pose_time, rest);
+  if (!search.accepted) return;
+  nlohmann::ordered_json found;
+  found["event"] = "relocalized";
+  found["reason"] = search.reason;
+  add_event(report.pose_time, found);
 }
 
 /// The time with all its digits, which a double would not keep.

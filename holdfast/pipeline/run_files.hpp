@@ -20,8 +20,8 @@ class RunFiles {
  public:
   static Result<RunFiles> create(const std::filesystem::path& dir);
 
-  /// Appends to trajectory.tum (claims only), steps.csv and, on a change of state and when an alarm
-  /// begins (with its evidence), events.jsonl.
+  /// Appends to trajectory.tum (claims only), steps.csv and, on a change of state, when an alarm
+  /// begins (with its evidence) and when a search ends (with its candidates), events.jsonl.
   Status add(const StepReport& report);
   /// A further file of the run.
   Status write(const std::string& name, const std::string& content);
@@ -34,6 +34,7 @@ class RunFiles {
   explicit RunFiles(io::AtomicFolder folder);
   void add_status(const StepReport& report);
   void add_alarm(const StepReport& report);
+  void add_search(const StepReport& report);
   void add_event(TimeNs t, const nlohmann::ordered_json& rest);
 
   io::AtomicFolder folder_;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "holdfast/core/search_summary.hpp"
+
 namespace holdfast::pipeline {
 namespace {
 
@@ -37,6 +39,7 @@ void RunSummary::add(const StepReport& report) {
   for (std::size_t i = 0; i < stage_ms_.size(); ++i) stage_ms_[i].push_back(report.times.ms[i]);
   ++by_state_[static_cast<std::size_t>(report.state)];
   claimed_ += claims_pose(report.state) ? 1 : 0;
+  relocalizations_ += report.search && report.search->accepted ? 1 : 0;
   held_ += report.imu_held_ns > 0 ? 1 : 0;
 }
 
@@ -64,7 +67,7 @@ std::string RunSummary::json(const About& about) const {
     j["status_share"][std::string(to_string(static_cast<State>(i)))] =
         static_cast<double>(by_state_[i]) / static_cast<double>(scans());
   }
-  j["relocalizations"] = 0;
+  j["relocalizations"] = relocalizations_;
   j["realtime_factor"] = about.elapsed_s > 0 ? seconds() / about.elapsed_s : 0.0;
   j["counters"]["scans_with_imu_held"] = held_;
   for (const auto& [name, count] : about.counters) j["counters"][name] = count;

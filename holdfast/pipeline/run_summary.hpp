@@ -38,6 +38,7 @@ class RunSummary {
   std::array<std::size_t, 8> by_state_{};
   std::size_t claimed_ = 0;
   std::size_t held_ = 0;
+  std::size_t relocalizations_ = 0;
   TimeNs first_ = 0;
   TimeNs last_ = 0;
 };

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "holdfast/core/search_summary.hpp"
 #include "holdfast/io/tum_file.hpp"
 #include "tests/map/built_map.hpp"
 
@@ -209,6 +210,31 @@ TEST(RunFiles, AnAlarmIsWrittenOnceWithItsEvidence) {
   ASSERT_EQ(event["evidence"].size(), 2U);
   EXPECT_EQ(event["evidence"][0]["witness"], "through");
   EXPECT_EQ(event["evidence"][0]["log_ratio"], 2.5);
+}
+
+TEST(RunFiles, ASearchIsWrittenWithItsCandidatesAndWhatCameOfIt) {
+  const ScratchFolder folder;
+  const fs::path run = folder.path() / "run";
+  SearchSummary search;
+  search.t = report(0, State::kLost).pose_time;
+  search.outcome = "found";
+  search.reason = "one pose explains what is seen";
+  search.candidates = {{{}, 0.75, 0.5, 0.999}, {{}, 0.7, 0.25, 0.001}};
+  search.candidates[0].T_map_body.translation = {1.5, 2.5, 3.5};
+  search.accepted = true;
+  StepReport found = report(2, State::kTracking);
+  found.search = std::make_shared<const SearchSummary>(search);
+  write_run(run, {report(0, State::kLost), report(1, State::kRelocalizing), found});
+  const auto events = lines(read(run / "events.jsonl"));
+  ASSERT_EQ(events.size(), 5U);  // three states, and two of the search
+  const auto told = nlohmann::json::parse(events[3]);
+  EXPECT_EQ(told["event"], "search");
+  EXPECT_EQ(told["outcome"], "found");
+  EXPECT_NEAR(told["began_s_ago"].get<double>(), 0.2, 1e-9);
+  ASSERT_EQ(told["candidates"].size(), 2U);
+  EXPECT_EQ(told["candidates"][0]["pose"], (std::vector<double>{1.5, 2.5, 3.5, 0, 0, 0, 1}));
+  EXPECT_EQ(told["candidates"][1]["probability"], 0.001);
+  EXPECT_EQ(nlohmann::json::parse(events[4])["event"], "relocalized");
 }
 
 TEST(RunFiles, WithoutACommitNothingIsLeft) {

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "holdfast/core/search_summary.hpp"
+
 namespace holdfast::pipeline {
 namespace {
 
@@ -42,6 +44,19 @@ TEST(RunSummary, OneStepIsEveryQuantile) {
   summary.add(step(0, State::kTracking, 0.75));
   const auto j = json_of(summary);
   for (const char* name : {"p50", "p95", "p99", "max"}) EXPECT_EQ(j["step_ms"][name], 0.75);
+}
+
+TEST(RunSummary, OnlyPosesThatWereTakenOverAreRelocalizations) {
+  RunSummary summary;
+  summary.add(step(0, State::kTracking, 1));
+  for (const bool accepted : {false, true, true}) {
+    SearchSummary search;
+    search.accepted = accepted;
+    StepReport report = step(1, State::kTracking, 1);
+    report.search = std::make_shared<const SearchSummary>(search);
+    summary.add(report);
+  }
+  EXPECT_EQ(json_of(summary)["relocalizations"], 2);
 }
 
 TEST(RunSummary, SharesOfStatesAddUpToOne) {

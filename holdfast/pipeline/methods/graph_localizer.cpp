@@ -30,8 +30,16 @@ constexpr double kMostScansAlike = 30;     // of the same part of the map, howev
 }  // namespace
 
 GraphLocalizer::GraphLocalizer(map::PriorMap map, const Setup& setup, const SE3& T_map_body)
+    : GraphLocalizer(std::move(map), setup) {
+  start_ = std::make_unique<baselines::MapFilter>(std::move(*map_), setup.start, T_map_body);
+  map_.reset();
+  placed_ = true;
+}
+
+GraphLocalizer::GraphLocalizer(map::PriorMap map, const Setup& setup)
     : setup_(setup),
-      start_(std::make_unique<baselines::MapFilter>(std::move(map), setup.start, T_map_body)),
+      map_(std::make_unique<map::PriorMap>(std::move(map))),
+      placed_(false),
       pool_(setup.start.threads),
       smoother_(setup.smoother) {
   scan_.T_body_lidar = setup.start.T_body_lidar;
@@ -54,7 +62,7 @@ StepReport GraphLocalizer::add_scan(const Scan& scan) {
     StageClock clock(report.times);
     if (witness_) witness_->add_scan(scan);
     clock.book(Stage::kOdometry);
-    step(scan, clock, report);
+    placed_ ? step(scan, clock, report) : wait(report);
     clock.book(Stage::kHealth);
   }
   if (witness_) report.odom_epoch = witness_->epoch();
@@ -81,6 +89,29 @@ StepReport GraphLocalizer::start(const Scan& scan) {
   // At rest there is nothing to smooth, and the filter knows that the robot does not move.
   if (found && !start_->rests()) take_over();
   return report;
+}
+
+void GraphLocalizer::wait(StepReport& report) {
+  report.reason = "no pose yet";
+  imu_.drop_before(report.pose_time - kImuMemory);
+}
+
+void GraphLocalizer::place(const Placement& found) {
+  if (start_) {
+    map_ = std::make_unique<map::PriorMap>(std::move(*start_).take_map());
+    start_.reset();
+  }
+  const PlacedNode node = place_node(found, witness_->odometry().state(), map_->info().gravity_map,
+                                     setup_.graph.gravity_sigma_m_s2);
+  smoother_.reset(node.x, node.P);
+  witness_->forget_map();
+  witness_->take_motion();
+  if (setup_.monitor) health_.emplace(*setup_.monitor, setup_.places);
+  map_error_.setZero();
+  few_told_.clear();
+  before_hold_.reset();
+  last_mapped_share_ = 1;
+  placed_ = true;
 }
 
 /// The first node is what the filter knows. It took gravity for known, so that what it holds for

@@ -12,6 +12,7 @@
 #include "holdfast/filter/matching/scan_match.hpp"
 #include "holdfast/pipeline/health/map_health.hpp"
 #include "holdfast/pipeline/methods/odometry_witness.hpp"
+#include "holdfast/pipeline/methods/placement.hpp"
 #include "holdfast/pipeline/methods/scan_localizer.hpp"
 
 namespace holdfast::pipeline {
@@ -68,11 +69,19 @@ class GraphLocalizer : public ScanLocalizer {
 
   /// `T_map_body` is the pose at the end of the first scan, to within Setup::start.
   GraphLocalizer(map::PriorMap map, const Setup& setup, const SE3& T_map_body);
+  /// Without a pose: until place() tells one, the odometry alone listens, and nothing is claimed.
+  GraphLocalizer(map::PriorMap map, const Setup& setup);
 
   void add_imu(const ImuSample& sample) override;
   StepReport add_scan(const Scan& scan) override;
 
+  /// Goes on from a pose that a search found. Call it between scans, and only with an odometry.
+  void place(const Placement& found);
+  bool has_pose() const { return placed_; }
+
   const estimator::FixedLagSmoother& smoother() const { return smoother_; }
+  /// Null if the odometry is switched off.
+  const OdometryWitness* witness() const { return witness_.get(); }
 
  private:
   /// What matching the newest scan gave.
@@ -90,6 +99,7 @@ class GraphLocalizer : public ScanLocalizer {
   };
 
   StepReport start(const Scan& scan);
+  void wait(StepReport& report);
   void take_over();
   void step(const Scan& scan, StageClock& clock, StepReport& report);
   bool prepare(const Scan& scan, StepReport& report);
@@ -115,6 +125,7 @@ class GraphLocalizer : public ScanLocalizer {
   Setup setup_;
   std::unique_ptr<baselines::MapFilter> start_;  ///< until it has found the pose
   std::unique_ptr<map::PriorMap> map_;           ///< from then on
+  bool placed_ = true;
   WorkerPool pool_;
   preprocess::ImuBuffer imu_;
   preprocess::ImuSegment segment_;

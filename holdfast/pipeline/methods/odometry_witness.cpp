@@ -40,6 +40,7 @@ void OdometryWitness::add_scan(const Scan& scan) {
   now_ = scan.end_time;
   epoch_ = report.step.odom_epoch;
   broke_ = report.broke;
+  tells_motion_ = report.corrected;
   way_squared_distance_.reset();
   if (!report.increment) {
     whole_ = false;
@@ -52,6 +53,12 @@ void OdometryWitness::add_scan(const Scan& scan) {
   for (auto* stretch : {&older_, &newer_}) {
     if (*stretch) (*stretch)->way.append(*report.increment);
   }
+}
+
+void OdometryWitness::forget_map() {
+  older_.reset();
+  newer_.reset();
+  way_squared_distance_.reset();
 }
 
 std::optional<estimator::BetweenFactor> OdometryWitness::take_motion() {

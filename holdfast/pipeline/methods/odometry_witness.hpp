@@ -41,10 +41,18 @@ class OdometryWitness {
   /// where the odometry broke since. Both may be off by a little more than their covariances say.
   const std::optional<double>& way_squared_distance() const { return way_squared_distance_; }
 
+  /// What compare() was told is of another place.
+  void forget_map();
+
   /// Did the odometry say of the newest scan that the robot was carried?
   bool broke() const { return broke_; }
 
   int epoch() const { return epoch_; }
+
+  /// Did the newest scan tell the odometry how the robot moves?
+  bool tells_motion() const { return tells_motion_; }
+
+  const odometry::Odometry& odometry() const { return odometry_; }
 
  private:
   static constexpr TimeNs kStretch = 4 * kSecond;
@@ -71,6 +79,7 @@ class OdometryWitness {
   TimeNs now_ = 0;
   int epoch_ = 0;
   bool broke_ = false;
+  bool tells_motion_ = false;
   Way since_node_;
   bool corrected_ = true;  ///< all of it, by scans
   bool whole_ = false;     ///< no break in it

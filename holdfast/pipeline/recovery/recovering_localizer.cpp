@@ -1,0 +1,117 @@
+#include "holdfast/pipeline/recovery/recovering_localizer.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace holdfast::pipeline {
+
+RecoveringLocalizer::RecoveringLocalizer(std::unique_ptr<GraphLocalizer> graph,
+                                         Loading search, const Setup& setup)
+    : graph_(std::move(graph)),
+      loading_(std::move(search)),
+      setup_(setup),
+      window_(setup.config) {}
+
+RecoveringLocalizer::~RecoveringLocalizer() = default;
+
+StepReport RecoveringLocalizer::add_scan(const Scan& scan) {
+  auto ended = end_search(scan.end_time);
+  StepReport report = graph_->add_scan(scan);
+  const bool was_lost =
+      std::exchange(lost_, report.state == State::kLost || !graph_->has_pose());
+  // What was seen before the robot was lost may be of another place.
+  if (lost_ && !was_lost) window_.clear();
+  const OdometryWitness& witness = *graph_->witness();
+  if (witness.tells_motion()) window_.add(witness.odometry(), witness.epoch());
+  report.search = std::move(ended);
+  if (!lost_) return report;
+  if (is_due(report.pose_time)) begin_search();
+  describe(report);
+  return report;
+}
+
+/// Takes the answer of the search if it is there by the time of the scan that comes now.
+std::shared_ptr<const SearchSummary> RecoveringLocalizer::end_search(TimeNs now) {
+  if (!running_) return nullptr;
+  if (!running_->done) running_->done = running_->answer.get();
+  const Answer& answer = *running_->done;
+  const double latency_s =
+      1e-9 * setup_.config.ns_per_lookup * static_cast<double>(answer.report.work);
+  if (now < running_->t + from_seconds(latency_s)) return nullptr;
+  SearchSummary summary = summary_of(answer, latency_s);
+  summary.accepted = lost_ && accept(answer.report);
+  last_reason_ = answer.report.reason;
+  not_before_ = now + from_seconds(setup_.config.retry_s);
+  running_.reset();
+  return std::make_shared<const SearchSummary>(std::move(summary));
+}
+
+/// The pose belongs to the scan that was searched with; the odometry carries it to the newest one.
+bool RecoveringLocalizer::accept(const relocalization::SearchReport& report) {
+  const OdometryWitness& witness = *graph_->witness();
+  if (!report.T_map_body || witness.epoch() != running_->epoch) return false;
+  const SE3 T_then_now = running_->T_odom_body.inverse() * witness.odometry().state().T_map_body;
+  graph_->place({*report.T_map_body * T_then_now, report.candidates.front().covariance});
+  return true;
+}
+
+SearchSummary RecoveringLocalizer::summary_of(const Answer& answer, double latency_s) const {
+  SearchSummary summary;
+  summary.t = running_->t;
+  summary.scans = running_->scans;
+  summary.outcome = relocalization::name_of(answer.report.outcome);
+  summary.reason = answer.report.reason;
+  summary.work = answer.report.work;
+  summary.latency_s = latency_s;
+  summary.cpu_ms = answer.cpu_ms;
+  for (const relocalization::Candidate& c : answer.report.candidates) {
+    summary.candidates.push_back(
+        {c.T_map_body, c.gridded_score, c.agreeing_share, c.probability});
+  }
+  return summary;
+}
+
+bool RecoveringLocalizer::is_due(TimeNs now) const {
+  return !running_ && window_.size() > 0 && window_.newest() == now && now >= not_before_;
+}
+
+void RecoveringLocalizer::begin_search() {
+  const OdometryWitness& witness = *graph_->witness();
+  relocalization::SearchQuery query = window_.query(witness.odometry(), setup_.p_body_lidar);
+  query.range_sigma_m = setup_.range_sigma_m;
+  Search search;
+  search.t = window_.newest();
+  search.T_odom_body = window_.T_odom_newest();
+  search.epoch = window_.epoch();
+  search.scans = static_cast<int>(window_.size());
+  search.answer = std::async(std::launch::async, [this, query = std::move(query)] {
+    return this->search(query);
+  });
+  running_ = std::move(search);
+}
+
+RecoveringLocalizer::Answer RecoveringLocalizer::search(const relocalization::SearchQuery& query) {
+  if (!search_) search_ = loading_.get();
+  Answer answer;
+  if (!*search_) {
+    answer.report.reason = "the map cannot be searched: " + search_->error().message;
+    return answer;
+  }
+  const double began = thread_cpu_ms();
+  answer.report = (*search_)->find(query);
+  answer.cpu_ms = thread_cpu_ms() - began;
+  return answer;
+}
+
+void RecoveringLocalizer::describe(StepReport& report) const {
+  if (running_) {
+    report.state = State::kRelocalizing;
+    report.reason = fmt::format("searching the map with {} scan{}", running_->scans,
+                                running_->scans == 1 ? "" : "s");
+  } else if (!last_reason_.empty()) {
+    report.reason = last_reason_;
+  }
+}
+
+}  // namespace holdfast::pipeline

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "holdfast/core/search_summary.hpp"
+#include "holdfast/pipeline/methods/graph_localizer.hpp"
+#include "holdfast/pipeline/recovery/scan_window.hpp"
+
+namespace holdfast::pipeline {
+
+/// A graph that finds itself: without a pose at the start, and wherever it says that it is lost,
+/// the map is searched with the last scans (article 3.4.2), and the graph goes on from what is
+/// found, carried to now by the odometry. The search runs in a thread of its own and never holds up
+/// a step; it takes effect after a time that follows from its work, so that a replay gives the same
+/// bits whatever the machine (and waits for it there, if it is not done by then).
+class RecoveringLocalizer : public ScanLocalizer {
+ public:
+  struct Setup {
+    RelocalizationConfig config;
+    Eigen::Vector3d p_body_lidar = Eigen::Vector3d::Zero();
+    double range_sigma_m = 0.02;
+  };
+
+  /// What searches; its map is read beside the first scans.
+  using Loading = std::future<Result<relocalization::GlobalSearch>>;
+
+  /// `graph` has an odometry.
+  RecoveringLocalizer(std::unique_ptr<GraphLocalizer> graph, Loading search, const Setup& setup);
+  ~RecoveringLocalizer() override;
+
+  void add_imu(const ImuSample& sample) override { graph_->add_imu(sample); }
+  StepReport add_scan(const Scan& scan) override;
+
+ private:
+  struct Answer {
+    relocalization::SearchReport report;
+    double cpu_ms = 0;
+  };
+
+  /// A search that was begun.
+  struct Search {
+    TimeNs t = 0;
+    SE3 T_odom_body;
+    int epoch = 0;
+    int scans = 0;
+    std::future<Answer> answer;
+    std::optional<Answer> done;
+  };
+
+  std::shared_ptr<const SearchSummary> end_search(TimeNs now);
+  bool accept(const relocalization::SearchReport& report);
+  SearchSummary summary_of(const Answer& answer, double latency_s) const;
+  Answer search(const relocalization::SearchQuery& query);
+  bool is_due(TimeNs now) const;
+  void begin_search();
+  void describe(StepReport& report) const;
+
+  std::unique_ptr<GraphLocalizer> graph_;
+  Loading loading_;
+  std::optional<Result<relocalization::GlobalSearch>> search_;  ///< used by one thread at a time
+  Setup setup_;
+  ScanWindow window_;
+  bool lost_ = true;          ///< or not yet found
+  TimeNs not_before_ = 0;     ///< the next search
+  std::string last_reason_;   ///< of the search before
+  std::optional<Search> running_;  // last: its thread uses search_
+};
+
+}  // namespace holdfast::pipeline
