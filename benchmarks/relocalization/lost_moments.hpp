@@ -28,8 +28,7 @@ struct MomentOptions {
 
 /// Runs the drive to its end. Points are deskewed by the true motion: what an odometry would add is
 /// not asked for here.
-Result<std::vector<LostMoment>> lost_moments(simulation::Simulation& drive,
-                                             const SE3& T_body_lidar,
+Result<std::vector<LostMoment>> lost_moments(simulation::Simulation& drive, const SE3& T_body_lidar,
                                              const preprocess::ScanSelectionConfig& selection,
                                              const MomentOptions& options);
 
