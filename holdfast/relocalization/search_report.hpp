@@ -15,13 +15,13 @@ namespace holdfast::relocalization {
 /// A pose that the search looked at closely: refined against the planes of the map.
 struct Candidate {
   SE3 T_map_body;
-  double gridded_score = 0;  ///< share of the search's points that hit an occupied cell
-  monitor::Looks seen;       ///< of the refined pose
-  monitor::UsualLooks usual;       ///< at the nearest place of the map
-  double agreeing_share = 0;       ///< mean robust weight over all points
-  double weakest_sigma_m = 0;      ///< of the position, along the direction known worst
-  double log_odds = 0;             ///< ln of how much likelier what is seen is here than elsewhere
-  double probability = 0;          ///< among all candidates, and that it is none of them
+  double gridded_score = 0;    ///< share of the search's points that hit an occupied cell
+  monitor::Looks seen;         ///< of the refined pose
+  monitor::UsualLooks usual;   ///< at the nearest place of the map
+  double agreeing_share = 0;   ///< mean robust weight over all points
+  double weakest_sigma_m = 0;  ///< of the position, along the direction known worst
+  double log_odds = 0;         ///< ln of how much likelier what is seen is here than elsewhere
+  double probability = 0;      ///< among all candidates, and that it is none of them
   registration::Matrix6d covariance = registration::Matrix6d::Zero();  ///< [p in map, R exp(phi)]
 };
 
@@ -39,8 +39,8 @@ const char* name_of(SearchOutcome outcome);
 /// What a search found. Everything but `T_map_body` is there to be shown and recorded.
 struct SearchReport {
   SearchOutcome outcome = SearchOutcome::kNothing;
-  std::optional<SE3> T_map_body;  ///< at the query's time; only if kFound
-  double probability = 0;         ///< of the best candidate
+  std::optional<SE3> T_map_body;      ///< at the query's time; only if kFound
+  double probability = 0;             ///< of the best candidate
   std::vector<Candidate> candidates;  ///< the likeliest first; poses that coincide are one
   std::string reason;                 ///< a sentence, for people
   std::uint64_t work = 0;  ///< elementary look-ups: a deterministic measure of the time taken
