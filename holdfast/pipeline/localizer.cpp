@@ -81,8 +81,8 @@ Result<std::unique_ptr<ScanLocalizer>> make_graph(const Config& config, map::Pri
   });
   return std::unique_ptr<ScanLocalizer>(std::make_unique<RecoveringLocalizer>(
       std::move(graph), std::move(search),
-      RecoveringLocalizer::Setup{config.relocalization, config.T_body_lidar.translation,
-                                 config.lidar.range_sigma_m}));
+      RecoveringLocalizer::Setup{config.relocalization, config.search.accept_probability,
+                                 config.T_body_lidar.translation, config.lidar.range_sigma_m}));
 }
 
 Result<std::unique_ptr<ScanLocalizer>> make_matching(const Config& config, map::PriorMap map,

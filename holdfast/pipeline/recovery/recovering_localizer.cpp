@@ -11,7 +11,8 @@ RecoveringLocalizer::RecoveringLocalizer(std::unique_ptr<GraphLocalizer> graph,
     : graph_(std::move(graph)),
       loading_(std::move(search)),
       setup_(setup),
-      window_(setup.config) {}
+      window_(setup.config),
+      confirmation_(setup.accept_probability) {}
 
 RecoveringLocalizer::~RecoveringLocalizer() = default;
 
@@ -20,8 +21,7 @@ StepReport RecoveringLocalizer::add_scan(const Scan& scan) {
   StepReport report = graph_->add_scan(scan);
   const bool was_lost =
       std::exchange(lost_, report.state == State::kLost || !graph_->has_pose());
-  // What was seen before the robot was lost may be of another place.
-  if (lost_ && !was_lost) window_.clear();
+  if (lost_ && !was_lost) begin_anew();
   const OdometryWitness& witness = *graph_->witness();
   if (witness.tells_motion()) window_.add(witness.odometry(), witness.epoch());
   report.search = std::move(ended);
@@ -29,6 +29,14 @@ StepReport RecoveringLocalizer::add_scan(const Scan& scan) {
   if (is_due(report.pose_time)) begin_search();
   describe(report);
   return report;
+}
+
+/// What was seen before the robot was lost may be of another place.
+void RecoveringLocalizer::begin_anew() {
+  window_.clear();
+  confirmation_.reset();
+  searches_ = 0;
+  last_reason_.clear();
 }
 
 /// Takes the answer of the search if it is there by the time of the scan that comes now.
@@ -41,18 +49,29 @@ std::shared_ptr<const SearchSummary> RecoveringLocalizer::end_search(TimeNs now)
   if (now < running_->t + from_seconds(latency_s)) return nullptr;
   SearchSummary summary = summary_of(answer, latency_s);
   summary.accepted = lost_ && accept(answer.report);
-  last_reason_ = answer.report.reason;
+  if (summary.accepted && searches_ > 1) {
+    summary.reason = fmt::format("one pose stands after {} searches", searches_);
+  }
+  last_reason_ = summary.accepted ? "" : summary.reason;
   not_before_ = now + from_seconds(setup_.config.retry_s);
   running_.reset();
   return std::make_shared<const SearchSummary>(std::move(summary));
 }
 
-/// The pose belongs to the scan that was searched with; the odometry carries it to the newest one.
+/// A pose belongs to the scan that was searched with; the odometry carries it to the newest one.
 bool RecoveringLocalizer::accept(const relocalization::SearchReport& report) {
   const OdometryWitness& witness = *graph_->witness();
-  if (!report.T_map_body || witness.epoch() != running_->epoch) return false;
+  if (running_->epoch != std::exchange(epoch_, running_->epoch)) {
+    confirmation_.reset();
+    searches_ = 0;
+  }
+  ++searches_;
+  const TimeNs before = std::exchange(last_search_, running_->t);
+  confirmation_.hear(report, running_->T_odom_body, to_seconds(running_->t - before));
+  const auto sure = confirmation_.confirmed();
+  if (!sure || witness.epoch() != running_->epoch) return false;
   const SE3 T_then_now = running_->T_odom_body.inverse() * witness.odometry().state().T_map_body;
-  graph_->place({*report.T_map_body * T_then_now, report.candidates.front().covariance});
+  graph_->place({sure->candidate.T_map_body * T_then_now, sure->candidate.covariance});
   return true;
 }
 
@@ -105,13 +124,9 @@ RecoveringLocalizer::Answer RecoveringLocalizer::search(const relocalization::Se
 }
 
 void RecoveringLocalizer::describe(StepReport& report) const {
-  if (running_) {
-    report.state = State::kRelocalizing;
-    report.reason = fmt::format("searching the map with {} scan{}", running_->scans,
-                                running_->scans == 1 ? "" : "s");
-  } else if (!last_reason_.empty()) {
-    report.reason = last_reason_;
-  }
+  if (!running_ && last_reason_.empty()) return;
+  report.state = State::kRelocalizing;
+  report.reason = last_reason_.empty() ? "searching the map" : last_reason_;
 }
 
 }  // namespace holdfast::pipeline

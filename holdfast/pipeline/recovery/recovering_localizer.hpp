@@ -8,6 +8,7 @@
 #include "holdfast/core/search_summary.hpp"
 #include "holdfast/pipeline/methods/graph_localizer.hpp"
 #include "holdfast/pipeline/recovery/scan_window.hpp"
+#include "holdfast/relocalization/confirmation.hpp"
 
 namespace holdfast::pipeline {
 
@@ -20,6 +21,7 @@ class RecoveringLocalizer : public ScanLocalizer {
  public:
   struct Setup {
     RelocalizationConfig config;
+    double accept_probability = 0.99;
     Eigen::Vector3d p_body_lidar = Eigen::Vector3d::Zero();
     double range_sigma_m = 0.02;
   };
@@ -52,6 +54,7 @@ class RecoveringLocalizer : public ScanLocalizer {
 
   std::shared_ptr<const SearchSummary> end_search(TimeNs now);
   bool accept(const relocalization::SearchReport& report);
+  void begin_anew();
   SearchSummary summary_of(const Answer& answer, double latency_s) const;
   Answer search(const relocalization::SearchQuery& query);
   bool is_due(TimeNs now) const;
@@ -63,9 +66,13 @@ class RecoveringLocalizer : public ScanLocalizer {
   std::optional<Result<relocalization::GlobalSearch>> search_;  ///< used by one thread at a time
   Setup setup_;
   ScanWindow window_;
-  bool lost_ = true;          ///< or not yet found
-  TimeNs not_before_ = 0;     ///< the next search
-  std::string last_reason_;   ///< of the search before
+  relocalization::Confirmation confirmation_;
+  bool lost_ = true;         ///< or not yet found
+  int searches_ = 0;         ///< since then, in this epoch of the odometry
+  int epoch_ = 0;            ///< of them
+  TimeNs last_search_ = 0;   ///< its newest scan
+  TimeNs not_before_ = 0;    ///< the next search
+  std::string last_reason_;  ///< of the search before
   std::optional<Search> running_;  // last: its thread uses search_
 };
 
