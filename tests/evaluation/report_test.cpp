@@ -220,6 +220,28 @@ TEST(Report, TellsWhatARunReportedInWords) {
   EXPECT_EQ(events[2].at("text"), "a < b");
 }
 
+TEST(Report, ShowsTheEvidenceOfAnAlarmAndTheCandidatesOfASearch) {
+  const RunFolder run;
+  put_run(run);
+  run.put("events.jsonl",
+          "{\"t\":1,\"event\":\"alarm\",\"reason\":\"lost\",\"evidence\":[{\"witness\":\"way\","
+          "\"log_ratio\":2.5,\"text\":\"another way\"}]}\n"
+          "{\"t\":2,\"event\":\"search\",\"outcome\":\"found\",\"reason\":\"one pose\","
+          "\"accepted\":true,\"scans\":3,\"cpu_ms\":12.4,\"candidates\":[{\"pose\":[1,2,0,0,0,"
+          "0.70710678,0.70710678],\"score\":0.9,\"agreeing\":0.6,\"probability\":0.75}]}\n"
+          "{\"t\":3,\"event\":\"search\",\"candidates\":[7,{\"pose\":[1]},{}],\"evidence\":3}\n");
+  const json events = payload_of(written_report(run)).at("events");
+  EXPECT_EQ(events[0].at("text"), "lost");
+  EXPECT_EQ(events[0].at("lines")[0], "+2.5 another way");
+  EXPECT_FALSE(events[0].contains("candidates"));
+  EXPECT_EQ(events[1].at("text"), "accepted, one pose: 3 scans, 12 ms");
+  ASSERT_EQ(events[1].at("candidates").size(), 1U);
+  EXPECT_EQ(events[1].at("candidates")[0].at("x"), 1.0);
+  EXPECT_NEAR(events[1].at("candidates")[0].at("yaw").get<double>(), 90.0, 1e-5);
+  EXPECT_NE(events[1].at("lines")[0].get<std::string>().find("75 % likely"), std::string::npos);
+  EXPECT_FALSE(events[2].contains("candidates"));
+}
+
 TEST(Report, TruthIsBrokenAtATeleport) {
   const RunFolder run;
   put_run(run);

@@ -5,14 +5,19 @@ class Focus {
   constructor() {
     this.listeners = [];
     this.rangeListeners = [];
+    this.eventListeners = [];
     this.index = null;
   }
   listen(listener) { this.listeners.push(listener); }
   listenRange(listener) { this.rangeListeners.push(listener); }
+  listenEvent(listener) { this.eventListeners.push(listener); }
   set(index) {
     if (index === this.index) return;
     this.index = index;
     for (const listener of this.listeners) listener(index);
+  }
+  setEvent(event) {
+    for (const listener of this.eventListeners) listener(event);
   }
   setRange(range) {
     for (const listener of this.rangeListeners) listener(range);

@@ -12,6 +12,7 @@ class MapPanel {
     this.points = data.map ? classifyPoints(decodePoints(data.map)) : null;
     this.drawn = (this.scans.x || []).map((x, i) => (isKnown(x) ? i : -1)).filter((i) => i >= 0);
     this.range = null;
+    this.candidates = [];  // of the search that is looked at
     this.view = { x: 0, y: 0, scale: 1 };
     this.chooseColours();
     this.listen();
@@ -96,6 +97,10 @@ class MapPanel {
     new ResizeObserver(() => this.resize()).observe(this.root);
     theme.listeners.push(() => this.draw());
     this.focus.listen((index) => this.showFocus(index));
+    this.focus.listenEvent((event) => {
+      this.candidates = event.candidates || [];
+      this.draw();
+    });
     this.focus.listenRange((range) => {
       this.range = range;
       this.draw();

@@ -86,7 +86,19 @@ const mapDrawing = {
     for (const run of runs) this.drawRun(context, run);
     this.drawEvents(context);
     this.drawEnds(context);
+    this.drawCandidates(context);
     this.drawMarker(context);
+  },
+
+  // Of a search: the less likely, the paler.
+  drawCandidates(context) {
+    for (const candidate of [...this.candidates].reverse()) {
+      const [u, v] = [this.u(candidate.x), this.v(candidate.y)];
+      context.globalAlpha = 0.35 + 0.65 * (candidate.probability || 0);
+      this.drawEnd(context, u, v, candidate.yaw);
+      this.label(context, `${Math.round(100 * candidate.probability)} %`, u, v, 1);
+    }
+    context.globalAlpha = 1;
   },
 
   drawRun(context, run) {

@@ -65,6 +65,14 @@ function showFigures(data) {
   }
 }
 
+// What spoke for and against, and where else the robot might have been: for the chosen event.
+function eventLines(event) {
+  const node = element("ul", "event-lines");
+  for (const line of event.lines || []) node.append(element("li", "", line));
+  node.hidden = true;
+  return node;
+}
+
 function eventRow(event, data, focus) {
   const row = element("button", "event");
   row.type = "button";
@@ -77,17 +85,25 @@ function eventRow(event, data, focus) {
   row.addEventListener("click", () => {
     const index = data.scans.t.findIndex((t) => t >= event.t);
     focus.set(index < 0 ? data.scans.t.length - 1 : index);
+    focus.setEvent(event);
   });
-  return row;
+  if (!event.lines) return [row];
+  const lines = eventLines(event);
+  row.setAttribute("aria-expanded", "false");
+  row.addEventListener("click", () => {
+    lines.hidden = !lines.hidden;
+    row.setAttribute("aria-expanded", String(!lines.hidden));
+  });
+  return [row, lines];
 }
 
 function eventsPanel(data, focus) {
   const node = panel("Events", "events-panel");
   const list = element("div", "events");
-  for (const event of data.events) list.append(eventRow(event, data, focus));
+  for (const event of data.events) list.append(...eventRow(event, data, focus));
   node.append(list);
   theme.listeners.push(() => {
-    list.replaceChildren(...data.events.map((event) => eventRow(event, data, focus)));
+    list.replaceChildren(...data.events.flatMap((event) => eventRow(event, data, focus)));
   });
   return node;
 }
