@@ -14,10 +14,11 @@ using monitor::Verdict;
 
 // Beyond these a claim misleads.
 constexpr double kWrongM = 0.5;
+constexpr double kWrongRad = 5.0 * std::numbers::pi / 180.0;
 constexpr double kReachM = 6.0;         // of a place: twice the way to the next one
 constexpr double kPlaceWorth = 15.0;    // looks: how far a place tells what is usual near it
+constexpr float kRaysM = 1500;          // in all: 100 rays of 15 m
 constexpr double kBreakLogRatio = 9.0;  // even chances, where they were one in ten thousand
-constexpr double kWrongRad = 5.0 * std::numbers::pi / 180.0;
 
 /// Probability that an error with this sigma, in its worst direction, is greater than `limit`.
 double p_beyond(double limit, double sigma) {
@@ -28,6 +29,17 @@ double p_beyond(double limit, double sigma) {
 double p_wrong(const Health& health, const StepReport& report) {
   return 1.0 - (1.0 - health.p_wrong) * (1.0 - p_beyond(kWrongM, report.sigma_trans_m)) *
                    (1.0 - p_beyond(kWrongRad, report.sigma_rot_rad));
+}
+
+/// Long rays cost more than they tell: of lines that are longer together than kRaysM, every n-th.
+void thin_out(std::vector<monitor::SightLine>& lines) {
+  float way_m = 0;
+  for (const monitor::SightLine& line : lines) way_m += (line.to - line.from).norm();
+  const auto step = static_cast<std::size_t>(std::ceil(way_m / kRaysM));
+  if (step <= 1) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < lines.size(); i += step) lines[kept++] = lines[i];
+  lines.resize(kept);
 }
 
 std::string percent(double seen, double usual) {
@@ -126,6 +138,7 @@ std::optional<monitor::Looks> MapHealth::look(const SceneView& scene, const Step
   for (std::size_t i = 0; i < count; i += step) {
     lines_.push_back({from, R * scene.points.points[i] + p});
   }
+  thin_out(lines_);
   const auto points = static_cast<double>(count);
   return monitor::looks_of(report.inlier_share * points, report.matches, points,
                            monitor::follow(scene.map, lines_, {}));
