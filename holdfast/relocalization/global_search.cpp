@@ -22,9 +22,11 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr float kGrownM = 0.0F;
-constexpr float kAsideM = 3.0F;
+constexpr float kAsideM = 6.0F;
 constexpr std::size_t kLeastPoints = 40;  // spread ones; fewer say too little
-constexpr std::size_t kRoughPoints = 400;
+constexpr std::size_t kRoughPoints = 160;
+constexpr std::size_t kFinePoints = 400;
+constexpr std::size_t kMostFine = 60;
 constexpr std::size_t kFullPoints = 2500;
 constexpr std::size_t kMostRefined = 20;
 constexpr double kFocusM = 60.0;
@@ -67,7 +69,30 @@ struct Prospect {
   SE3 rough;       ///< refined with few points
   double gridded_score = 0;
   double share = 0;  ///< that agrees then
+
+  void take(const Refined& refined) {
+    rough = refined.T_map_body;
+    share = refined.usable ? refined.agreeing_share : 0;
+  }
 };
+
+/// Sorts by the share that agrees and leaves out copies of better ones.
+void keep_best(std::size_t most, std::vector<Prospect>& prospects) {
+  std::stable_sort(prospects.begin(), prospects.end(),
+                   [](const Prospect& a, const Prospect& b) { return a.share > b.share; });
+  std::vector<Prospect> kept;
+  for (const Prospect& prospect : prospects) {
+    const bool copy = std::any_of(kept.begin(), kept.end(), [&](const Prospect& other) {
+      return same_pose(prospect.rough, other.rough);
+    });
+    if (!copy && prospect.share > 0 && kept.size() < most) kept.push_back(prospect);
+  }
+  prospects = std::move(kept);
+}
+
+Sight sight_of(const SearchQuery& query, std::size_t most) {
+  return {thinned(query.points, most), query.gravity_body, query.p_body_lidar, query.range_sigma_m};
+}
 
 }  // namespace
 
@@ -79,7 +104,7 @@ struct GlobalSearch::Parts {
   Standpoints standpoints;
 
   std::vector<Prospect> search_widely(const SearchQuery& query, SearchReport& report) const;
-  Status rank(const Sight& few, Refiner& refiner, std::vector<Prospect>& prospects);
+  Status rank(const SearchQuery& query, Refiner& refiner, std::vector<Prospect>& prospects);
   Status look_closely(const Sight& sight, const std::vector<Prospect>& prospects, Refiner& refiner,
                       SearchReport& report);
 };
@@ -103,8 +128,9 @@ Result<GlobalSearch> GlobalSearch::create(const std::filesystem::path& dir,
   const float margin_m = static_cast<float>(config.reach_m) + kAsideM + kBlockM;
   auto occupancy = OccupancyPyramid::of_map(dir, map->info(), kGrownM, margin_m);
   if (!occupancy) return occupancy.error();
-  Standpoints standpoints(places->all(), {kAsideM, static_cast<float>(config.lowest_m),
-                                          static_cast<float>(config.highest_m)});
+  Standpoints standpoints(
+      places->all(), *occupancy,
+      {kAsideM, static_cast<float>(config.lowest_m), static_cast<float>(config.highest_m)});
   return GlobalSearch(std::make_unique<Parts>(Parts{
       config, std::move(*map), std::move(*places), std::move(*occupancy), std::move(standpoints)}));
 }
@@ -143,6 +169,11 @@ std::vector<Prospect> GlobalSearch::Parts::search_widely(const SearchQuery& quer
     report.reason = "the limit of work was reached before all of the map was searched";
     return {};
   }
+  if (found.too_alike) {
+    report.outcome = SearchOutcome::kAmbiguous;
+    report.reason = "what is seen looks like too many places of the map";
+    return {};
+  }
   std::vector<Prospect> prospects;
   for (const Mode& mode : found.modes) {
     const Vector3d cell(mode.cell.x + 0.5, mode.cell.y + 0.5, mode.cell.z + 0.5);
@@ -157,27 +188,23 @@ std::vector<Prospect> GlobalSearch::Parts::search_widely(const SearchQuery& quer
   return prospects;
 }
 
-/// Refines all modes with few points; the best first, copies left out.
-Status GlobalSearch::Parts::rank(const Sight& few, Refiner& refiner,
+/// Refines all modes, at first with few points; the best first, copies left out.
+Status GlobalSearch::Parts::rank(const SearchQuery& query, Refiner& refiner,
                                  std::vector<Prospect>& prospects) {
+  const Sight few = sight_of(query, kRoughPoints);
+  const Sight more = sight_of(query, kFinePoints);
   for (Prospect& prospect : prospects) {
     if (auto focused = map.focus(prospect.T_map_body.translation, kFocusM); !focused) {
       return focused;
     }
-    const Refined rough = refiner.roughly(few, prospect.T_map_body);
-    prospect.rough = rough.T_map_body;
-    prospect.share = rough.usable ? rough.agreeing_share : 0;
+    prospect.take(refiner.roughly(few, prospect.T_map_body));
   }
-  std::stable_sort(prospects.begin(), prospects.end(),
-                   [](const Prospect& a, const Prospect& b) { return a.share > b.share; });
-  std::vector<Prospect> kept;
-  for (const Prospect& prospect : prospects) {
-    const bool copy = std::any_of(kept.begin(), kept.end(), [&](const Prospect& other) {
-      return same_pose(prospect.rough, other.rough);
-    });
-    if (!copy && prospect.share > 0) kept.push_back(prospect);
+  keep_best(kMostFine, prospects);
+  for (Prospect& prospect : prospects) {
+    if (auto focused = map.focus(prospect.rough.translation, kFocusM); !focused) return focused;
+    prospect.take(refiner.finely(more, prospect.rough));
   }
-  prospects = std::move(kept);
+  keep_best(kMostFine, prospects);
   return Done{};
 }
 
@@ -208,12 +235,10 @@ SearchReport GlobalSearch::find(const SearchQuery& query) {
   std::vector<Prospect> prospects = parts_->search_widely(query, report);
   if (!report.reason.empty()) return report;
   Refiner refiner(parts_->map);
-  const Sight few{thinned(query.points, kRoughPoints), query.gravity_body, query.p_body_lidar,
-                  query.range_sigma_m};
-  const Sight many{thinned(query.points, kFullPoints), query.gravity_body, query.p_body_lidar,
-                   query.range_sigma_m};
-  Status done = parts_->rank(few, refiner, prospects);
-  if (done) done = parts_->look_closely(many, prospects, refiner, report);
+  Status done = parts_->rank(query, refiner, prospects);
+  if (done) {
+    done = parts_->look_closely(sight_of(query, kFullPoints), prospects, refiner, report);
+  }
   report.work += static_cast<std::uint64_t>(kWideWork) * refiner.work();
   if (!done) {
     report.reason = done.error().message;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,6 +13,10 @@
 
 namespace holdfast::relocalization {
 
+/// Sectors of yaw in the body frame; below 0 where next to nothing is seen.
+inline constexpr std::size_t kSectors = 24;
+using SectorShares = std::array<float, kSectors>;
+
 /// A pose that the search looked at closely: refined against the planes of the map.
 struct Candidate {
   SE3 T_map_body;
@@ -19,6 +24,8 @@ struct Candidate {
   monitor::Looks seen;         ///< of the refined pose
   monitor::UsualLooks usual;   ///< at the nearest place of the map
   double agreeing_share = 0;   ///< mean robust weight over all points
+  double explained = 0;        ///< share of what the points could say for a pose, at most
+  SectorShares by_sector{};    ///< likewise of the points of each sector of directions
   double weakest_sigma_m = 0;  ///< of the position, along the direction known worst
   double log_odds = 0;         ///< ln of how much likelier what is seen is here than elsewhere
   double probability = 0;      ///< among all candidates, and that it is none of them

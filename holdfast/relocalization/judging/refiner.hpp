@@ -17,6 +17,7 @@ struct RefineStage {
   float gate_m;
   float surface_sigma_m;  ///< how far a point may still be off its plane
   int iterations;
+  bool level_held;  ///< height and tilt: coarse pairs would take a table for the floor
 };
 
 /// What is matched, in the body frame.
@@ -31,7 +32,7 @@ struct Sight {
 struct Refined {
   SE3 T_map_body;
   registration::NormalEquations equations;  ///< at that pose, of the points alone
-  registration::Correspondences pairs;      ///< likewise; only of full descents
+  registration::Correspondences pairs;      ///< likewise; only from fully()
   double agreeing_share = 0;                ///< mean robust weight over all points
   bool usable = false;                      ///< enough pairs to have been moved by
 };
@@ -43,17 +44,20 @@ class Refiner {
   /// `map` must be focused near the poses.
   explicit Refiner(const map::PriorMap& map) : map_(map) {}
 
-  /// From some decimetres and degrees: the descent that ranks modes, with few points.
+  /// From the middle of a cell: x, y and yaw by coarse planes, then the height by fine ones.
   Refined roughly(const Sight& sight, const SE3& T_map_body);
-  /// To the end, with all points.
+  /// From about a decimetre, by the finest planes.
+  Refined finely(const Sight& sight, const SE3& T_map_body);
+  /// From some centimetres to the end.
   Refined fully(const Sight& sight, const SE3& T_map_body);
 
   std::uint64_t work() const { return work_; }  ///< points paired since the start
 
  private:
-  void descend(const Sight& sight, std::span<const RefineStage> stages, Refined& refined);
+  Refined descend(const Sight& sight, std::span<const RefineStage> stages, const SE3& T_map_body);
+  void choose_height(const Sight& sight, Refined& refined);
   void match(const Sight& sight, const RefineStage& stage, const SE3& T_map_body);
-  bool step(const Sight& sight, const SE3& start, SE3& T_map_body);
+  bool step(const Sight& sight, const SE3& start, bool level_held, SE3& T_map_body);
 
   const map::PriorMap& map_;
   WorkerPool alone_{1};

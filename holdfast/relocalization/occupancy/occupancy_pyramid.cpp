@@ -27,8 +27,7 @@ OccupancyPyramid::OccupancyPyramid(std::span<const Eigen::Vector3f> points, floa
   height_ = cell_of(high.y()) + margin + 1 - low_.y;
   words_ = (cell_of(high.z() + grown_m) - low_.z) / kLanes + 1;
   levels_.resize(kLevels);
-  levels_[0] = {0, static_cast<std::size_t>(width_) + 1,
-                static_cast<std::size_t>(height_) + 1, {}};
+  levels_[0] = {0, static_cast<std::size_t>(width_) + 1, static_cast<std::size_t>(height_) + 1, {}};
   levels_[0].columns.assign(levels_[0].width * levels_[0].height * words_, 0);
   for (const Eigen::Vector3f& p : points) {
     for (int corner = 0; corner < (grown_m > 0 ? 8 : 1); ++corner) {
@@ -43,8 +42,8 @@ OccupancyPyramid::OccupancyPyramid(std::span<const Eigen::Vector3f> points, floa
   for (int level = 1; level < kLevels; ++level) make_coarser(level);
 }
 
-/// From the level below: blocks of half the side. A column holds for all blocks that begin at one of
-/// its 2^shift places: the last of them reaches farthest.
+/// From the level below: blocks of half the side. A column holds for all blocks that begin at one
+/// of its 2^shift places: the last of them reaches farthest.
 void OccupancyPyramid::make_coarser(int level) {
   const Level& fine = levels_[level - 1];
   Level& coarse = levels_[level];

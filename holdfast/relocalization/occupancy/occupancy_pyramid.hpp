@@ -32,8 +32,8 @@ class OccupancyPyramid {
   /// `grown_m` beside it. `margin_m` is known to be empty around.
   OccupancyPyramid(std::span<const Eigen::Vector3f> points, float grown_m, float margin_m);
   /// Of all tiles of a map.
-  static Result<OccupancyPyramid> of_map(const std::filesystem::path& dir,
-                                         const map::MapInfo& info, float grown_m, float margin_m);
+  static Result<OccupancyPyramid> of_map(const std::filesystem::path& dir, const map::MapInfo& info,
+                                         float grown_m, float margin_m);
 
   /// Words of a column.
   int words() const { return words_; }

@@ -10,7 +10,8 @@ int cell_of(float metres) { return static_cast<int>(std::floor(metres / kCellM))
 
 }  // namespace
 
-Standpoints::Standpoints(const std::vector<places::Place>& places, const Reach& reach)
+Standpoints::Standpoints(const std::vector<places::Place>& places, const OccupancyPyramid& map,
+                         const Reach& reach)
     : levels_(OccupancyPyramid::kLevels) {
   if (places.empty()) return;
   Eigen::Vector3f low = places.front().position;
@@ -26,39 +27,56 @@ Standpoints::Standpoints(const std::vector<places::Place>& places, const Reach& 
   finest.height = cell_of(high.y()) + aside + 1 - low_.y;
   words_ = (cell_of(high.z() + reach.highest_m) - low_.z) / kLanes + 1;
   finest.columns.assign(static_cast<std::size_t>(finest.width) * finest.height * words_, 0);
-  for (const places::Place& place : places) mark(place, reach);
+  for (const places::Place& place : places) spread(place, map, reach);
   for (int level = 1; level < OccupancyPyramid::kLevels; ++level) make_coarser(level);
   const int top = OccupancyPyramid::kLevels - 1;
   for (int y = 0; y < levels_[top].height; ++y) {
     for (int x = 0; x < levels_[top].width; ++x) {
       for (int word = 0; word < words_; ++word) {
-        const Block block{x + (low_.x >> top), y + (low_.y >> top), word,
-                          levels_[top].columns[(static_cast<std::size_t>(y) * levels_[top].width +
-                                                x) * words_ + word]};
+        const Block block{
+            x + (low_.x >> top), y + (low_.y >> top), word,
+            levels_[top]
+                .columns[(static_cast<std::size_t>(y) * levels_[top].width + x) * words_ + word]};
         if (block.lanes != 0) roots_.push_back(block);
       }
     }
   }
 }
 
-void Standpoints::mark(const places::Place& place, const Reach& reach) {
+/// From the place's cell over free ones; obstacles are reached, not passed.
+void Standpoints::spread(const places::Place& place, const OccupancyPyramid& map,
+                         const Reach& reach) {
   const Eigen::Vector3f& p = place.position;
-  const int aside = cell_of(reach.aside_m) + 1;
-  for (int y = cell_of(p.y()) - aside; y <= cell_of(p.y()) + aside; ++y) {
-    for (int x = cell_of(p.x()) - aside; x <= cell_of(p.x()) + aside; ++x) {
-      const float dx = kCellM * (static_cast<float>(x) + 0.5F) - p.x();
-      const float dy = kCellM * (static_cast<float>(y) + 0.5F) - p.y();
-      if (dx * dx + dy * dy > reach.aside_m * reach.aside_m) continue;
-      if (x < low_.x || y < low_.y || x >= low_.x + levels_[0].width ||
-          y >= low_.y + levels_[0].height) {
-        continue;
-      }
-      const auto column = static_cast<std::size_t>(y - low_.y) * levels_[0].width + (x - low_.x);
-      for (int z = cell_of(p.z() + reach.lowest_m); z <= cell_of(p.z() + reach.highest_m); ++z) {
-        levels_[0].columns[column * words_ + (z - low_.z) / kLanes] |= std::uint64_t{1}
-                                                                       << ((z - low_.z) % kLanes);
-      }
-    }
+  const int aside = cell_of(reach.aside_m) + 1, side = 2 * aside + 1;
+  const Cell middle{cell_of(p.x()), cell_of(p.y()), cell_of(p.z())};
+  std::vector<std::uint8_t> reached(static_cast<std::size_t>(side) * side, 0);
+  std::vector<Cell> front;
+  const auto reach_cell = [&](int x, int y) {
+    const float dx = static_cast<float>(x - middle.x), dy = static_cast<float>(y - middle.y);
+    if (kCellM * std::sqrt(dx * dx + dy * dy) > reach.aside_m) return;
+    std::uint8_t& seen =
+        reached[static_cast<std::size_t>(y - middle.y + aside) * side + (x - middle.x + aside)];
+    if (seen != 0) return;
+    seen = 1;
+    mark(x, y, p.z(), reach);
+    if (!map.occupied({x, y, middle.z})) front.push_back({x, y, middle.z});
+  };
+  reach_cell(middle.x, middle.y);
+  while (!front.empty()) {
+    const Cell cell = front.back();
+    front.pop_back();
+    reach_cell(cell.x + 1, cell.y);
+    reach_cell(cell.x - 1, cell.y);
+    reach_cell(cell.x, cell.y + 1);
+    reach_cell(cell.x, cell.y - 1);
+  }
+}
+
+void Standpoints::mark(int x, int y, float z, const Reach& reach) {
+  const auto column = static_cast<std::size_t>(y - low_.y) * levels_[0].width + (x - low_.x);
+  for (int k = cell_of(z + reach.lowest_m); k <= cell_of(z + reach.highest_m); ++k) {
+    levels_[0].columns[column * words_ + (k - low_.z) / kLanes] |= std::uint64_t{1}
+                                                                   << ((k - low_.z) % kLanes);
   }
 }
 

@@ -9,17 +9,19 @@
 
 namespace holdfast::relocalization {
 
-/// Cells in which the LiDAR of a lost robot may be: those near a place, as columns of bits. Level L
-/// has one column for each block of 2^L x 2^L cells: the union. Read-only, thread-safe.
+/// Cells in which the LiDAR of a lost robot may be, as columns of bits: those near a place to which
+/// a level way leads from there, up to the first obstacle. Level L has one column for each block of
+/// 2^L x 2^L cells: the union. Read-only, thread-safe.
 class Standpoints {
  public:
   struct Reach {
-    float aside_m = 3.0F;  ///< of a place: as far as it is to the next one
+    float aside_m = 6.0F;  ///< of a place: floors that shine have few of them
     float lowest_m = -0.8F, highest_m = 1.2F;
   };
 
   /// Positions count from the map's origin.
-  Standpoints(const std::vector<places::Place>& places, const Reach& reach);
+  Standpoints(const std::vector<places::Place>& places, const OccupancyPyramid& map,
+              const Reach& reach);
 
   /// A column of a level: block x, y (of 2^level cells each) and one word of its heights.
   struct Block {
@@ -45,7 +47,8 @@ class Standpoints {
     std::vector<std::uint64_t> columns;
   };
 
-  void mark(const places::Place& place, const Reach& reach);
+  void spread(const places::Place& place, const OccupancyPyramid& map, const Reach& reach);
+  void mark(int x, int y, float z, const Reach& reach);
   void make_coarser(int level);
 
   Cell low_;

@@ -39,7 +39,7 @@ std::vector<Located> locate(const std::vector<Vector3f>& points, const SpreadOpt
 }
 
 std::size_t sector_of(const Vector3f& p) {
-  const float turn = std::atan2(p.y(), p.x()) / (2 * std::numbers::pi_v<float>) + 0.5F;
+  const float turn = std::atan2(p.y(), p.x()) / (2 * std::numbers::pi_v<float>)+0.5F;
   return std::min(kSectors - 1, static_cast<std::size_t>(turn * kSectors));
 }
 
@@ -76,8 +76,8 @@ void take(const Sectors& sectors, std::size_t most, std::vector<Vector3f>& chose
       const std::size_t s = k * 23 % kSectors;  // neighbours not one after the other
       if (round >= sectors[s].size()) continue;
       const double u = kGolden * static_cast<double>(round + 1);
-      auto i = static_cast<std::size_t>((u - std::floor(u)) *
-                                        static_cast<double>(sectors[s].size()));
+      auto i =
+          static_cast<std::size_t>((u - std::floor(u)) * static_cast<double>(sectors[s].size()));
       while (taken[s][i] != 0) i = (i + 1) % sectors[s].size();
       taken[s][i] = 1;
       chosen.push_back(sectors[s][i]);
@@ -98,9 +98,8 @@ std::vector<Vector3f> spread_points(const std::vector<Vector3f>& points,
   take(flat, static_cast<std::size_t>(options.flat_share * static_cast<float>(most)), level);
   take(upright, most - level.size(), chosen);
   // Where little is upright, floors are not all that is seen.
-  const std::size_t flat_most =
-      static_cast<std::size_t>(options.flat_share / (1.0F - options.flat_share) *
-                               static_cast<float>(chosen.size()));
+  const std::size_t flat_most = static_cast<std::size_t>(
+      options.flat_share / (1.0F - options.flat_share) * static_cast<float>(chosen.size()));
   level.resize(std::min(level.size(), flat_most));
   std::vector<Vector3f> mixed;
   for (std::size_t i = 0, l = 0; i < chosen.size(); ++i) {

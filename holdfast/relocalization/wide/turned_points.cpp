@@ -38,7 +38,8 @@ TurnedPoints::TurnedPoints(const std::vector<Eigen::Vector3f>& points, int yaws,
     const Eigen::Matrix3f R = (R_map_level * turn).toRotationMatrix();
     for (int word = 0; word < words_; ++word) {
       TurnedPoint* to = turned_.data() + (static_cast<std::size_t>(k) * words_ + word) * points_;
-      for (std::size_t i = 0; i < points.size(); ++i) to[i] = located(R * points[i], map, lane_z[word]);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        to[i] = located(R * points[i], map, lane_z[word]);
     }
   }
 }

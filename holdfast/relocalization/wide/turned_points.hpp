@@ -13,8 +13,8 @@ namespace holdfast::relocalization {
 /// that is shifted so that lane k tells whether the point hits something with the LiDAR at height
 /// k. Lanes are those of one word of the standpoints.
 struct TurnedPoint {
-  std::int32_t step = 0;         ///< words from the LiDAR's column to its, at unstrided levels
-  std::int16_t x = 0, y = 0;     ///< columns, likewise
+  std::int32_t step = 0;           ///< words from the LiDAR's column to its, at unstrided levels
+  std::int16_t x = 0, y = 0;       ///< columns, likewise
   std::int16_t low = 0, high = 0;  ///< words of the column that are shifted into one
   std::uint8_t shift = 0;
   bool has_low = false, has_high = false;

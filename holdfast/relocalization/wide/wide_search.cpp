@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kTop = OccupancyPyramid::kLevels - 1;
 constexpr std::size_t kBatch = 8;
-constexpr std::size_t kMostKept = 1 << 16;
+constexpr std::size_t kMostKept = 1 << 15;
 
 bool better(const Mode& a, const Mode& b) {
   if (a.hits != b.hits) return a.hits > b.hits;
@@ -50,6 +50,7 @@ WideResult WideSearch::run(std::size_t points) {
   best_ = 0;
   work_ = 0;
   kept_.clear();
+  too_alike_ = false;
   std::vector<Node> roots;
   open_roots(roots);
   for (const Node& root : roots) {
@@ -58,8 +59,8 @@ WideResult WideSearch::run(std::size_t points) {
   }
   thin_out();
   std::sort(kept_.begin(), kept_.end(), better);
-  return {apart(kept_, options_, points_.yaws()), real_points_, work_,
-          work_ >= options_.most_work};
+  return {apart(kept_, options_, points_.yaws()), real_points_, work_, work_ >= options_.most_work,
+          too_alike_};
 }
 
 /// Of a mode that is still worth finding.
@@ -72,8 +73,12 @@ int WideSearch::least_hits() const {
 void WideSearch::open_roots(std::vector<Node>& roots) {
   for (int yaw = 0; yaw < points_.yaws() && work_ < options_.most_work; ++yaw) {
     for (const Standpoints::Block& block : standpoints_.roots()) {
-      Node node{0, block.x, block.y, static_cast<std::int16_t>(yaw),
-                static_cast<std::int16_t>(block.word), block.lanes};
+      Node node{0,
+                block.x,
+                block.y,
+                static_cast<std::int16_t>(yaw),
+                static_cast<std::int16_t>(block.word),
+                block.lanes};
       if (bound(kTop, node)) roots.push_back(node);
     }
   }
@@ -99,9 +104,8 @@ bool WideSearch::bound(int level, Node& node) {
   best_ = std::max(best_, node.bound);
   for (std::uint64_t left = node.lanes; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
-    kept_.push_back({{node.x, node.y, standpoints_.low_z(node.word) + lane},
-                     node.yaw,
-                     counter.count(lane)});
+    kept_.push_back(
+        {{node.x, node.y, standpoints_.low_z(node.word) + lane}, node.yaw, counter.count(lane)});
   }
   return true;
 }
@@ -119,8 +123,7 @@ bool WideSearch::count(int level, const Node& node, LaneCounter& counter) {
   for (std::size_t begin = 0; begin < all; begin += kBatch) {
     for (std::size_t i = 0; i < kBatch; ++i) {
       const TurnedPoint& p = points[begin + i];
-      const std::uint64_t* column =
-          kStrided ? map_.column(level, x + p.x, y + p.y) : here + p.step;
+      const std::uint64_t* column = kStrided ? map_.column(level, x + p.x, y + p.y) : here + p.step;
       if (kOneWord) {
         const std::uint64_t low = p.has_low ? *column >> p.shift : 0;
         hit[i] = p.has_high ? *column << 1 << (63 - p.shift) : low;
@@ -144,7 +147,7 @@ bool WideSearch::count(int level, const Node& node, LaneCounter& counter) {
 }
 
 void WideSearch::descend(int level, const Node& node) {
-  if (work_ >= options_.most_work) return;
+  if (work_ >= options_.most_work || too_alike_) return;
   std::array<Node, 4> children;
   std::size_t count = 0;
   for (int i = 0; i < 4; ++i) {
@@ -155,7 +158,7 @@ void WideSearch::descend(int level, const Node& node) {
     if (child.lanes != 0 && bound(level - 1, child)) children[count++] = child;
   }
   if (level == 1) {
-    if (kept_.size() >= kMostKept) thin_out();
+    if (kept_.size() >= kMostKept) make_room();
     return;
   }
   std::stable_sort(children.begin(), children.begin() + count,
@@ -163,6 +166,14 @@ void WideSearch::descend(int level, const Node& node) {
   for (std::size_t i = 0; i < count; ++i) {
     if (children[i].bound >= least_hits()) descend(level - 1, children[i]);
   }
+}
+
+void WideSearch::make_room() {
+  thin_out();
+  if (kept_.size() < kMostKept / 2) return;
+  options_.keep_share = std::max(options_.keep_share, options_.least_keep_share);
+  thin_out();
+  too_alike_ = kept_.size() >= kMostKept / 2;
 }
 
 /// Keeps the best of each small neighbourhood, and only what still is near the best of all.

@@ -11,10 +11,11 @@
 namespace holdfast::relocalization {
 
 struct WideOptions {
-  double keep_share = 0.9;     ///< of the best score: modes down to it are kept
-  double least_share = 0.4;    ///< of the points; what hits less is no mode
-  double apart_m = 1.0;        ///< modes that are nearer than that...
-  double apart_rad = 0.1745;   ///< ...and turned by less are one
+  double keep_share = 0.8;        ///< of the best score: modes down to it are kept...
+  double least_keep_share = 0.9;  ///< ...or, where these are too many, down to this
+  double least_share = 0.4;       ///< of the points; what hits less is no mode
+  double apart_m = 1.0;           ///< modes that are nearer than that...
+  double apart_rad = 0.1745;      ///< ...and turned by less are one
   std::size_t most_modes = 400;
   std::uint64_t most_work = 1'000'000'000;
 };
@@ -31,6 +32,7 @@ struct WideResult {
   int points = 0;            ///< that were searched with
   std::uint64_t work = 0;    ///< points looked up
   bool out_of_work = false;  ///< there may be better ones
+  bool too_alike = false;    ///< so many that nothing tells them apart: not all were kept
 };
 
 /// Branch and bound over x, y, z and yaw: exact for the number of points that hit an occupied cell.
@@ -61,6 +63,7 @@ class WideSearch {
   void open_roots(std::vector<Node>& roots);
   void descend(int level, const Node& node);
   void keep(const Node& node);
+  void make_room();
   void thin_out();
 
   const OccupancyPyramid& map_;
@@ -71,6 +74,7 @@ class WideSearch {
   int best_ = 0;
   std::uint64_t work_ = 0;
   std::vector<Mode> kept_;
+  bool too_alike_ = false;
 };
 
 }  // namespace holdfast::relocalization
