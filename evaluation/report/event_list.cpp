@@ -93,10 +93,11 @@ Json lines_of(const Event& event) {
   }
   for (const Json& c : list_of(event, "candidates")) {
     if (!c.is_object()) continue;
-    lines.push_back(fmt::format("{:.0f} % likely: {:.0f} % of the returns agree with the map, {:.0f} "
-                                "% on the grid",
-                                100 * number_at(c, "probability"), 100 * number_at(c, "agreeing"),
-                                100 * number_at(c, "score")));
+    lines.push_back(
+        fmt::format("{:.0f} % likely: {:.0f} % of the returns agree with the map, {:.0f} "
+                    "% on the grid",
+                    100 * number_at(c, "probability"), 100 * number_at(c, "agreeing"),
+                    100 * number_at(c, "score")));
   }
   return lines;
 }

@@ -18,9 +18,9 @@ struct MonitorConfig {
   static void fields(Self& self, Visitor& visit) {
     constexpr double kAny = std::numeric_limits<double>::infinity();
     visit("method", self.method,
-          FieldDoc{"how a wrong pose is noticed: from independent witnesses (evidence; method: graph "
-                   "only), by residuals and jumps (dual_index: article 3.4.1; every method), or not "
-                   "at all (off)",
+          FieldDoc{"how a wrong pose is noticed: from independent witnesses (evidence; method: "
+                   "graph only), by residuals and jumps (dual_index: article 3.4.1; every "
+                   "method), or not at all (off)",
                    -kAny, kAny, "evidence|dual_index|off"});
     visit("suspect_p", self.suspect_p,
           FieldDoc{

@@ -11,7 +11,7 @@
 #include "holdfast/monitor/dual_index.hpp"
 #include "holdfast/monitor/monitor_config.hpp"
 #include "holdfast/odometry/odometry_config.hpp"
-#include "holdfast/pipeline/methods/graph_localizer.hpp"
+#include "holdfast/pipeline/graph/graph_localizer.hpp"
 #include "holdfast/pipeline/recovery/relocalization_config.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 #include "holdfast/registration/fit_at_query.hpp"

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "holdfast/pipeline/graph/graph_localizer.hpp"
 #include "holdfast/pipeline/health/dual_index_localizer.hpp"
 #include "holdfast/pipeline/methods/feature_selection.hpp"
-#include "holdfast/pipeline/methods/graph_localizer.hpp"
 #include "holdfast/pipeline/methods/map_filter_method.hpp"
 #include "holdfast/pipeline/methods/odometry_run.hpp"
 #include "holdfast/pipeline/methods/query_matching.hpp"

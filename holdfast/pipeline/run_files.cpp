@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "holdfast/core/search_summary.hpp"
 #include "holdfast/io/tum_file.hpp"
 
 namespace holdfast::pipeline {

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "holdfast/core/search_summary.hpp"
-
 namespace holdfast::pipeline {
 namespace {
 

@@ -25,9 +25,9 @@ Confirmation::Hypothesis* Confirmation::find(const SE3& T_map_odom) {
   for (Hypothesis& h : hypotheses_) {
     const SE3 between = h.T_map_odom.inverse() * T_map_odom;
     // Where the robot is, not where its odometry began, which is a lever away.
-    const double apart = (h.T_map_odom * last_T_odom_body_.translation -
-                          T_map_odom * last_T_odom_body_.translation)
-                             .norm();
+    const double apart =
+        (h.T_map_odom * last_T_odom_body_.translation - T_map_odom * last_T_odom_body_.translation)
+            .norm();
     if (apart < kSameM && so3::log(between.rotation).norm() < kSameRad) return &h;
   }
   return nullptr;

@@ -1,4 +1,3 @@
-#include "holdfast/core/search_summary.hpp"
 #include "holdfast/places/place_maker.hpp"
 #include "tests/integration/drive_in_map.hpp"
 
@@ -29,8 +28,8 @@ class RecoveryDrive {
 
   std::vector<StepReport> localize(const std::optional<SE3>& T_map_body) {
     auto map = valid(map::PriorMap::open(map_dir()));
-    auto localizer = valid(
-        pipeline::Localizer::create(config_of(*simulation), std::move(map), T_map_body));
+    auto localizer =
+        valid(pipeline::Localizer::create(config_of(*simulation), std::move(map), T_map_body));
     std::vector<StepReport> reports;
     valid(pipeline::run(*simulation, localizer, [&](const StepReport& report, double) -> Status {
       reports.push_back(report);
@@ -44,10 +43,9 @@ class RecoveryDrive {
         .norm();
   }
   bool is_found(const StepReport& report) const {
-    const double turned =
-        so3::angle_between(report.T_map_body.rotation,
-                           simulation->truth_at(report.pose_time).rotation) *
-        180.0 / std::numbers::pi;
+    const double turned = so3::angle_between(report.T_map_body.rotation,
+                                             simulation->truth_at(report.pose_time).rotation) *
+                          180.0 / std::numbers::pi;
     return (report.state == State::kTracking || report.state == State::kDegraded) &&
            error_m(report) < kFoundM && turned < kFoundDeg;
   }
@@ -65,8 +63,10 @@ std::optional<double> found_after_s(const RecoveryDrive& drive,
   std::optional<double> found;
   for (const StepReport& r : reports) {
     if (r.pose_time < since) continue;
-    if (!drive.is_found(r)) found.reset();
-    else if (!found) found = to_seconds(r.pose_time - since);
+    if (!drive.is_found(r))
+      found.reset();
+    else if (!found)
+      found = to_seconds(r.pose_time - since);
   }
   return found;
 }

@@ -1,4 +1,4 @@
-#include "holdfast/pipeline/methods/placement.hpp"
+#include "holdfast/pipeline/graph/placement.hpp"
 
 #include <gtest/gtest.h>
 

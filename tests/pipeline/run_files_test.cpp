@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "holdfast/core/search_summary.hpp"
 #include "holdfast/io/tum_file.hpp"
 #include "tests/map/built_map.hpp"
 

@@ -4,8 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "holdfast/core/search_summary.hpp"
-
 namespace holdfast::pipeline {
 namespace {
 

@@ -61,10 +61,10 @@ TEST(Confirmation, TheWayTellsThePlaceThatFollowsTheOdometry) {
   }
   ASSERT_GT(sure_at, 1);
   EXPECT_LE(sure_at, 8);
-  EXPECT_LT((several.confirmed()->candidate.T_map_body.translation -
-             kHere * at(sure_at).translation)
-                .norm(),
-            1e-12);
+  EXPECT_LT(
+      (several.confirmed()->candidate.T_map_body.translation - kHere * at(sure_at).translation)
+          .norm(),
+      1e-12);
 }
 
 TEST(Confirmation, ARobotThatStandsDoesNotGrowSureOfAnything) {

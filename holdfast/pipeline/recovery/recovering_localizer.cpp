@@ -6,8 +6,8 @@
 
 namespace holdfast::pipeline {
 
-RecoveringLocalizer::RecoveringLocalizer(std::unique_ptr<GraphLocalizer> graph,
-                                         Loading search, const Setup& setup)
+RecoveringLocalizer::RecoveringLocalizer(std::unique_ptr<GraphLocalizer> graph, Loading search,
+                                         const Setup& setup)
     : graph_(std::move(graph)),
       loading_(std::move(search)),
       setup_(setup),
@@ -19,8 +19,7 @@ RecoveringLocalizer::~RecoveringLocalizer() = default;
 StepReport RecoveringLocalizer::add_scan(const Scan& scan) {
   auto ended = end_search(scan.end_time);
   StepReport report = graph_->add_scan(scan);
-  const bool was_lost =
-      std::exchange(lost_, report.state == State::kLost || !graph_->has_pose());
+  const bool was_lost = std::exchange(lost_, report.state == State::kLost || !graph_->has_pose());
   if (lost_ && !was_lost) begin_anew();
   const OdometryWitness& witness = *graph_->witness();
   if (witness.tells_motion()) window_.add(witness.odometry(), witness.epoch());
@@ -85,8 +84,7 @@ SearchSummary RecoveringLocalizer::summary_of(const Answer& answer, double laten
   summary.latency_s = latency_s;
   summary.cpu_ms = answer.cpu_ms;
   for (const relocalization::Candidate& c : answer.report.candidates) {
-    summary.candidates.push_back(
-        {c.T_map_body, c.gridded_score, c.agreeing_share, c.probability});
+    summary.candidates.push_back({c.T_map_body, c.gridded_score, c.agreeing_share, c.probability});
   }
   return summary;
 }
@@ -104,9 +102,8 @@ void RecoveringLocalizer::begin_search() {
   search.T_odom_body = window_.T_odom_newest();
   search.epoch = window_.epoch();
   search.scans = static_cast<int>(window_.size());
-  search.answer = std::async(std::launch::async, [this, query = std::move(query)] {
-    return this->search(query);
-  });
+  search.answer = std::async(std::launch::async,
+                             [this, query = std::move(query)] { return this->search(query); });
   running_ = std::move(search);
 }
 

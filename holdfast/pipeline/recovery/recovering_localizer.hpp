@@ -5,8 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "holdfast/core/search_summary.hpp"
-#include "holdfast/pipeline/methods/graph_localizer.hpp"
+#include "holdfast/pipeline/graph/graph_localizer.hpp"
 #include "holdfast/pipeline/recovery/scan_window.hpp"
 #include "holdfast/relocalization/confirmation.hpp"
 
@@ -67,12 +66,12 @@ class RecoveringLocalizer : public ScanLocalizer {
   Setup setup_;
   ScanWindow window_;
   relocalization::Confirmation confirmation_;
-  bool lost_ = true;         ///< or not yet found
-  int searches_ = 0;         ///< since then, in this epoch of the odometry
-  int epoch_ = 0;            ///< of them
-  TimeNs last_search_ = 0;   ///< its newest scan
-  TimeNs not_before_ = 0;    ///< the next search
-  std::string last_reason_;  ///< of the search before
+  bool lost_ = true;               ///< or not yet found
+  int searches_ = 0;               ///< since then, in this epoch of the odometry
+  int epoch_ = 0;                  ///< of them
+  TimeNs last_search_ = 0;         ///< its newest scan
+  TimeNs not_before_ = 0;          ///< the next search
+  std::string last_reason_;        ///< of the search before
   std::optional<Search> running_;  // last: its thread uses search_
 };
 

@@ -19,16 +19,19 @@ struct RelocalizationConfig {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     constexpr double kAny = std::numeric_limits<double>::infinity();
-    visit("method", self.method,
-          FieldDoc{"how a lost robot is found: by a search of the whole map (search), or not at all "
-                   "(off)",
-                   -kAny, kAny, "search|off"});
-    visit("window_scans", self.window_scans,
-          FieldDoc{"scans that are searched with, the newest and those before it since the robot is "
-                   "lost (article 3.4.2: 6)",
-                   1, 100});
-    visit("scan_spacing_m", self.scan_spacing_m,
-          FieldDoc{"way between scans that are searched with: nearer ones see the same", 0.0, 10.0});
+    visit(
+        "method", self.method,
+        FieldDoc{"how a lost robot is found: by a search of the whole map (search), or not at all "
+                 "(off)",
+                 -kAny, kAny, "search|off"});
+    visit(
+        "window_scans", self.window_scans,
+        FieldDoc{"scans that are searched with, the newest and those before it since the robot is "
+                 "lost (article 3.4.2: 6)",
+                 1, 100});
+    visit(
+        "scan_spacing_m", self.scan_spacing_m,
+        FieldDoc{"way between scans that are searched with: nearer ones see the same", 0.0, 10.0});
     visit("scan_spacing_deg", self.scan_spacing_deg,
           FieldDoc{"or rotation between them", 0.0, 180.0});
     visit("retry_s", self.retry_s,

@@ -9,8 +9,7 @@ bool ScanWindow::newest_is_near() const {
   const Seen& last = scans_.back();
   const Seen& before = scans_[scans_.size() - 2];
   const SE3 way = before.T_odom_body.inverse() * last.T_odom_body;
-  const double turned =
-      so3::angle_between(before.T_odom_body.rotation, last.T_odom_body.rotation);
+  const double turned = so3::angle_between(before.T_odom_body.rotation, last.T_odom_body.rotation);
   return way.translation.norm() < config_.scan_spacing_m &&
          turned < config_.scan_spacing_deg * std::numbers::pi / 180.0;
 }
@@ -30,8 +29,7 @@ relocalization::SearchQuery ScanWindow::query(const odometry::Odometry& odometry
                                               const Eigen::Vector3d& p_body_lidar) const {
   relocalization::SearchQuery query;
   query.p_body_lidar = p_body_lidar;
-  query.gravity_body =
-      (T_odom_newest().rotation.inverse() * odometry.gravity()).normalized();
+  query.gravity_body = (T_odom_newest().rotation.inverse() * odometry.gravity()).normalized();
   for (const Seen& scan : scans_) {
     const SE3 T_newest_body = T_odom_newest().inverse() * scan.T_odom_body;
     const Eigen::Matrix3f R = T_newest_body.rotation.toRotationMatrix().cast<float>();

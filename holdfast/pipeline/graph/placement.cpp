@@ -1,4 +1,4 @@
-#include "holdfast/pipeline/methods/placement.hpp"
+#include "holdfast/pipeline/graph/placement.hpp"
 
 namespace holdfast::pipeline {
 namespace {
@@ -6,7 +6,7 @@ namespace {
 using estimator::Matrix18d;
 using estimator::NodeState;
 
-constexpr double kInflation = 4.0;       // of the odometry's variances: twice its sigmas
+constexpr double kInflation = 4.0;         // of the odometry's variances: twice its sigmas
 constexpr double kLeastSpeedSigma = 0.05;  // m/s
 constexpr double kLeastPositionSigma = 0.02;
 constexpr double kLeastRotationSigma = 0.003;

@@ -1,4 +1,4 @@
-#include "holdfast/pipeline/methods/odometry_witness.hpp"
+#include "holdfast/pipeline/graph/odometry_witness.hpp"
 
 #include <Eigen/Cholesky>
 #include <utility>
