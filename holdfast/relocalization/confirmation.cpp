@@ -13,11 +13,16 @@ constexpr double kSameM = 0.5;
 constexpr double kSameRad = 5.0 * std::numbers::pi / 180.0;
 constexpr double kNewsAfterM = 1.0;  // as in monitor::BeliefConfig
 constexpr double kNewsAfterS = 5.0;
-constexpr double kElsewhere = 0.5;     // probability of none of the candidates, before looking
 constexpr double kAbsent = -2.0;       // log odds of a pose that a search did not come upon
 constexpr double kForgotten = -12.0;   // log odds from which one no longer matters
 constexpr double kMostLogOdds = 12.0;  // more would outweigh any doubt that comes later
 constexpr double kOpenSigmaM = 0.2;    // a direction known worse than that is not determined
+
+/// ln of how much likelier a candidate is than none of them, as its search told.
+double log_odds(const Candidate& candidate, double p_none) {
+  constexpr double kLeast = 1e-9;
+  return std::log(std::max(candidate.probability, kLeast) / std::max(p_none, kLeast));
+}
 
 }  // namespace
 
@@ -45,6 +50,8 @@ void Confirmation::hear(const SearchReport& report, const SE3& T_odom_body,
   last_T_odom_body_ = T_odom_body;
   any_ = true;
   for (Hypothesis& h : hypotheses_) h.seen_now = false;
+  double p_none = 1.0;
+  for (const Candidate& c : report.candidates) p_none -= c.probability;
   for (const Candidate& c : report.candidates) {
     const SE3 T_map_odom = c.T_map_body * T_odom_body.inverse();
     Hypothesis* known = find(T_map_odom);
@@ -53,7 +60,8 @@ void Confirmation::hear(const SearchReport& report, const SE3& T_odom_body,
       hypotheses_.push_back({T_map_odom, c, absent_log_odds_, true});
       known = &hypotheses_.back();
     }
-    *known = {T_map_odom, c, std::min(known->log_odds + news * c.log_odds, kMostLogOdds), true};
+    const double sum = known->log_odds + news * log_odds(c, p_none);
+    *known = {T_map_odom, c, std::min(sum, kMostLogOdds), true};
   }
   for (Hypothesis& h : hypotheses_) h.log_odds += h.seen_now ? 0.0 : news * kAbsent;
   absent_log_odds_ = std::max(absent_log_odds_ + news * kAbsent, kForgotten);
@@ -61,10 +69,9 @@ void Confirmation::hear(const SearchReport& report, const SE3& T_odom_body,
 }
 
 double Confirmation::probability(const Hypothesis& hypothesis) const {
-  const double each = (1.0 - kElsewhere) / static_cast<double>(hypotheses_.size());
-  double sum = kElsewhere;
-  for (const Hypothesis& h : hypotheses_) sum += each * std::exp(h.log_odds);
-  return each * std::exp(hypothesis.log_odds) / sum;
+  double sum = 1.0;  // elsewhere
+  for (const Hypothesis& h : hypotheses_) sum += std::exp(h.log_odds);
+  return std::exp(hypothesis.log_odds) / sum;
 }
 
 std::optional<Confirmed> Confirmation::confirmed() const {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace holdfast::relocalization {
 namespace {
 
@@ -10,7 +12,8 @@ constexpr double kAccept = 0.99;
 /// The robot `way_m` along its way from the start, in the odometry.
 SE3 at(double way_m) { return {Eigen::Quaterniond::Identity(), {way_m, 0, 0}}; }
 
-/// As seen from `T_odom_body`, if the odometry begins at `begin` in the map.
+/// As seen from `T_odom_body`, if the odometry begins at `begin` in the map; `log_odds` is of it
+/// against none of the candidates.
 Candidate candidate(const SE3& begin, const SE3& T_odom_body, double log_odds) {
   Candidate c;
   c.T_map_body = begin * T_odom_body;
@@ -22,6 +25,9 @@ Candidate candidate(const SE3& begin, const SE3& T_odom_body, double log_odds) {
 SearchReport report(std::vector<Candidate> candidates) {
   SearchReport r;
   r.outcome = SearchOutcome::kAmbiguous;
+  double sum = 1.0;
+  for (const Candidate& c : candidates) sum += std::exp(c.log_odds);
+  for (Candidate& c : candidates) c.probability = std::exp(c.log_odds) / sum;
   r.candidates = std::move(candidates);
   return r;
 }
