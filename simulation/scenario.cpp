@@ -52,6 +52,8 @@ Scenario make_corridor() { return from_file("corridor.yaml"); }
 Scenario make_office() { return from_file("office.yaml"); }
 Scenario make_hall() { return from_file("hall.yaml"); }
 Scenario make_warehouse() { return from_file("warehouse.yaml"); }
+Scenario make_yard() { return from_file("yard.yaml"); }
+Scenario make_tunnel() { return from_file("tunnel.yaml"); }
 Scenario make_garage() { return from_file("garage.yaml"); }
 Scenario make_campus() { return from_file("campus.yaml"); }
 Scenario make_lift() { return from_file("lift.yaml"); }

@@ -9,10 +9,10 @@
 namespace holdfast::simulation {
 namespace {
 
-constexpr double kFirst = 4;                   // seconds from the start
+constexpr double kFirst = 4;                 // seconds from the start
 constexpr TimeNs kHorizon = 3600 * kSecond;  // no group comes later
-constexpr TimeNs kApart = 6 * kSecond;         // from what else happens to the robot
-constexpr double kSpread = 0.15;               // metres between the nearest and the farthest
+constexpr TimeNs kApart = 6 * kSecond;       // from what else happens to the robot
+constexpr double kSpread = 0.15;             // metres between the nearest and the farthest
 
 bool is_near(const TimeSpan& span, const EventSpec& event) {
   const bool takes_away = event.kind == EventKind::kKidnap || event.kind == EventKind::kCrowd;

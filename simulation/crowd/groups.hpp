@@ -20,8 +20,9 @@ struct GroupPlan {
   static void fields(Self& self, Visitor& visit) {
     visit("people", self.people, FieldDoc{"of a group; 0: there are none", 0, 12});
     visit("per_minute", self.per_minute, FieldDoc{"of the time between two groups", 0.01, 20});
-    visit("lasts_s", self.lasts_s,
-          FieldDoc{"on average, from 0.6 to 1.4 times that; a quarter is coming, one going", 3, 100});
+    visit(
+        "lasts_s", self.lasts_s,
+        FieldDoc{"on average, from 0.6 to 1.4 times that; a quarter is coming, one going", 3, 100});
     visit("near_m", self.near_m,
           FieldDoc{"how near they come to the robot's axis, where there is room", 0.7, 3});
   }

@@ -73,10 +73,12 @@ std::uint64_t fingerprint_of(const Scenario& scenario) {
 
 /// What the scenarios were before they became files.
 TEST(ScenarioFiles, HoldTheWorldsThatWereProgramsBefore) {
-  const std::array<std::pair<const char*, std::uint64_t>, 3> known = {{
+  const std::array<std::pair<const char*, std::uint64_t>, 5> known = {{
       {"box", 0x01c051de6e4dc499ULL},
       {"corridor", 0x11e79bd864ea926eULL},
       {"warehouse", 0x70282690f0d0f8b1ULL},
+      {"yard", 0x93a6642c0c8ad0beULL},
+      {"tunnel", 0xa7213798b2b4f29eULL},
   }};
   for (const auto& [name, fingerprint] : known) {
     const auto scenario = make_scenario(name);
