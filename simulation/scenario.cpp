@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::array<ScenarioInfo, 12> kScenarios = {{
     {"corridor", "50 x 3 m with doors, pilasters and boards; 100 m there and back", make_corridor},
-    {"office", "10 x 8 m with desks, cabinets and five people walking; 200 m of rounds",
+    {"office", "10 x 8 m with desks, cabinets, five people walking and groups; 200 m of rounds",
      make_office},
-    {"hall", "20 x 15 m of glass and polished floor, a few columns, poor in returns; 150 m",
+    {"hall", "20 x 15 m of glass and polished stone with a lobby, poor in returns; 150 m",
      make_hall},
     {"warehouse", "40 x 24 m with rows of racks that look alike; 200 m", make_warehouse},
     {"yard", "80 x 60 m open ground between buildings, trees and poles; 250 m", make_yard},
@@ -47,6 +47,13 @@ Scenario from_file(const std::string& name) {
 
 }  // namespace
 
+Scenario make_box() { return from_file("box.yaml"); }
+Scenario make_corridor() { return from_file("corridor.yaml"); }
+Scenario make_office() { return from_file("office.yaml"); }
+Scenario make_hall() { return from_file("hall.yaml"); }
+Scenario make_warehouse() { return from_file("warehouse.yaml"); }
+Scenario make_yard() { return from_file("yard.yaml"); }
+Scenario make_tunnel() { return from_file("tunnel.yaml"); }
 Scenario make_garage() { return from_file("garage.yaml"); }
 Scenario make_campus() { return from_file("campus.yaml"); }
 Scenario make_lift() { return from_file("lift.yaml"); }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "holdfast/core/result.hpp"
+#include "simulation/crowd/groups.hpp"
 #include "simulation/motion/drive.hpp"
 #include "simulation/motion/route.hpp"
 #include "simulation/movers/lifts.hpp"
@@ -38,6 +39,7 @@ struct Scenario {
   Route route;
   DriveStyle style;
   std::vector<WalkerPlan> walkers;
+  GroupPlan groups;
   std::vector<VehiclePlan> vehicles;
   std::vector<LiftPlan> lifts;
   std::vector<Region> regions;  ///< for results of parts of the way; may be none

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "holdfast/core/parallel.hpp"
-#include "simulation/crowd/crowd.hpp"
+#include "simulation/crowd/groups.hpp"
 #include "simulation/events/event_schedule.hpp"
 #include "simulation/sensors/imu/imu_sensor.hpp"
 #include "simulation/sensors/lidar/beam_errors.hpp"
@@ -94,7 +94,8 @@ struct Simulation::Parts {
   TimeNs last_event = 0;
 
   Parts(Scenario the_scenario, std::optional<ChangedWorld> change,
-        const SimulationOptions& the_options, Drive the_drive);
+        const SimulationOptions& the_options, Drive the_drive,
+        const std::vector<CrowdPlan>& crowds);
   TimeNs log_end() const { return static_cast<TimeNs>(imu_samples - 1) * imu.interval(); }
   TimeNs scan_begin(std::size_t scan) const {
     return first_scan + static_cast<TimeNs>(scan) * options.lidar.period;
@@ -109,7 +110,8 @@ struct Simulation::Parts {
 };
 
 Simulation::Parts::Parts(Scenario the_scenario, std::optional<ChangedWorld> change,
-                         const SimulationOptions& the_options, Drive the_drive)
+                         const SimulationOptions& the_options, Drive the_drive,
+                         const std::vector<CrowdPlan>& crowds)
     : options(as_built(the_options)),
       scenario(std::move(the_scenario)),
       changes(change ? change->changes : std::vector<ObjectChange>()),
@@ -132,8 +134,9 @@ Simulation::Parts::Parts(Scenario the_scenario, std::optional<ChangedWorld> chan
       around{caster, scenario.world.materials, drive, walkers, movers, schedule.dark()} {
   scans =
       static_cast<std::size_t>(std::max<TimeNs>(log_end() - first_scan, 0) / options.lidar.period);
-  for (const TimeSpan& span : schedule.crowds) {
-    walkers.join(gather_crowd(span, drive, options.lidar.T_body_lidar.translation, walkers, caster,
+  for (const CrowdPlan& crowd : crowds) {
+    if (crowd.span.begin >= drive.duration()) continue;
+    walkers.join(gather_crowd(crowd, drive, options.lidar.T_body_lidar.translation, walkers, caster,
                               options.seed));
   }
   events = schedule.took_place(drive, kEpoch, log_end());
@@ -237,10 +240,10 @@ Result<std::unique_ptr<Simulation>> Simulation::create(Scenario scenario,
   scenario.style = style_of(scenario, options);
   std::optional<TimeNs> duration;
   if (options.duration_s) duration = from_seconds(*options.duration_s);
+  const auto crowds = plan_crowds(options.events, scenario.groups, options.seed);
   Drive drive = Drive::plan(scenario.route, scenario.style, options.seed, duration,
                             starts_of(EventKind::kKidnap, options.events),
-                            spans_of(EventKind::kKidnap, options.events),
-                            spans_of(EventKind::kCrowd, options.events));
+                            spans_of(EventKind::kKidnap, options.events), spans_of(crowds));
   std::optional<ChangedWorld> change;
   if (options.changed_share > 0) {
     auto changed = change_world(scenario, options.changed_share, options.seed);
@@ -252,8 +255,8 @@ Result<std::unique_ptr<Simulation>> Simulation::create(Scenario scenario,
   if (!late.empty()) return Error{late};
   const std::string hasty = hasty_carry(drive);
   if (!hasty.empty()) return Error{hasty};
-  auto parts =
-      std::make_unique<Parts>(std::move(scenario), std::move(change), options, std::move(drive));
+  auto parts = std::make_unique<Parts>(std::move(scenario), std::move(change), options,
+                                       std::move(drive), crowds);
   return std::unique_ptr<Simulation>(new Simulation(std::move(parts)));
 }
 

@@ -17,8 +17,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
-constexpr std::size_t kInner = 12;
-constexpr std::size_t kOuter = 20;
 constexpr double kRounds = 0.12;  // rad/s at which a ring walks round the robot
 
 constexpr TimeNs kComing = 5 * kSecond / 2;
@@ -40,9 +38,15 @@ struct Way {
 /// Plans a crowd from the time at which it is complete forwards and backwards.
 class Gathering {
  public:
-  Gathering(const TimeSpan& span, const Drive& robot, const Vector3d& eye, const Walkers& others,
+  Gathering(const CrowdPlan& plan, const Drive& robot, const Vector3d& eye, const Walkers& others,
             const RayCaster& world, std::uint64_t seed)
-      : span_(span), robot_(robot), eye_(eye), others_(others), world_(world), seed_(seed) {}
+      : plan_(plan),
+        span_(densest(plan.span)),
+        robot_(robot),
+        eye_(eye),
+        others_(others),
+        world_(world),
+        seed_(seed) {}
 
   std::vector<Passer> plan() const {
     const std::vector<CrowdMember> placed = place_members();
@@ -84,13 +88,17 @@ class Gathering {
     if (!ground) return members;
     RandomStream random(seed_, "crowd.places." + std::to_string(span_.begin));
     const double turned = random.uniform(0, kTwoPi);
-    for (std::size_t i = 0; i < kInner + kOuter; ++i) {
-      const bool inner = i < kInner;
-      const auto share = inner ? static_cast<double>(i) / kInner
-                               : (static_cast<double>(i - kInner) + 0.5) / kOuter;
+    const auto inner_count = static_cast<double>(plan_.inner);
+    const auto outer_count = static_cast<double>(plan_.outer);
+    for (std::size_t i = 0; i < plan_.inner + plan_.outer; ++i) {
+      const bool inner = i < plan_.inner;
+      const auto share = inner ? static_cast<double>(i) / inner_count
+                               : (static_cast<double>(i - plan_.inner) + 0.5) / outer_count;
       CrowdMember member;
+      member.room = plan_.room_m;
       member.angle = turned + kTwoPi * share + random.uniform(-0.1, 0.1);
-      member.distance = inner ? random.uniform(1.0, 1.3) : random.uniform(1.6, 2.8);
+      member.distance =
+          inner ? random.uniform(plan_.nearest_m, plan_.farthest_m) : random.uniform(1.6, 2.8);
       const Vector3d foot(robot.x(), robot.y(), *ground);
       if (place(foot, member)) members.push_back(member);
     }
@@ -100,7 +108,8 @@ class Gathering {
   /// On the way to its place, as far as there is room.
   bool place(const Vector3d& foot, CrowdMember& member) const {
     const Vector2d direction(std::cos(member.angle), std::sin(member.angle));
-    for (double distance = member.distance; distance >= 0.9; distance -= 0.15) {
+    const double least = plan_.nearest_m - 0.1;
+    for (double distance = member.distance; distance >= least; distance -= 0.15) {
       Vector3d there = foot;
       there.head<2>() += distance * direction;
       const auto ground = world_.ground_under(there + Vector3d(0, 0, 0.6), 1.2);
@@ -201,7 +210,8 @@ class Gathering {
     return true;
   }
 
-  TimeSpan span_;
+  CrowdPlan plan_;
+  TimeSpan span_;  ///< when it is densest
   const Drive& robot_;
   Vector3d eye_;
   const Walkers& others_;
@@ -216,10 +226,10 @@ TimeSpan densest(const TimeSpan& crowd) {
   return {crowd.begin + coming, crowd.end - coming};
 }
 
-std::vector<Passer> gather_crowd(const TimeSpan& span, const Drive& robot, const Vector3d& eye,
+std::vector<Passer> gather_crowd(const CrowdPlan& plan, const Drive& robot, const Vector3d& eye,
                                  const Walkers& others, const RayCaster& world,
                                  std::uint64_t seed) {
-  return Gathering(densest(span), robot, eye, others, world, seed).plan();
+  return Gathering(plan, robot, eye, others, world, seed).plan();
 }
 
 }  // namespace holdfast::simulation

@@ -18,8 +18,7 @@ constexpr double kFastest = 2.2;       // m/s
 constexpr double kLeaving = 1.6;       // m/s
 constexpr double kAcceleration = 6.0;  // m/s^2
 
-constexpr double kRobotRoom = 1.1;    // metres from the robot's axis at which one begins to yield
-constexpr double kRobotPush = 6;      // m/s for each metre nearer than that
+constexpr double kRobotPush = 6;      // m/s for each metre nearer than a member's room
 constexpr double kRobotAhead = 0.35;  // seconds for which one foresees the robot
 constexpr double kPersonRoom = 0.6;
 constexpr double kPersonPush = 3;
@@ -75,9 +74,10 @@ Vector2d aim(const CrowdMember& member, const CrowdScene& scene) {
 Vector2d wish(const std::vector<CrowdMember>& members, std::size_t i, const CrowdScene& scene) {
   const Vector2d place = members[i].place.head<2>();
   const Vector2d robot = scene.robot.head<2>();
+  const double room = members[i].room;
   Vector2d v = shortened(aim(members[i], scene), kFastest);
-  v += yielding(place, robot, kRobotRoom, kRobotPush);
-  v += yielding(place, robot + kRobotAhead * scene.robot_velocity, kRobotRoom, kRobotPush);
+  v += yielding(place, robot, room, kRobotPush);
+  v += yielding(place, robot + kRobotAhead * scene.robot_velocity, room, kRobotPush);
   for (std::size_t k = 0; k < members.size(); ++k) {
     if (k != i) v += yielding(place, members[k].place.head<2>(), kPersonRoom, kPersonPush);
   }

@@ -18,6 +18,7 @@ struct CrowdMember {
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< in the direction in which time is walked
   double angle = 0;     ///< of the place round the robot that is aimed at, in the map
   double distance = 0;  ///< of that place from the robot
+  double room = 1.1;    ///< metres from the robot's axis at which one begins to yield to it
   bool is_leaving = false;
   double left_s = 0;                    ///< seconds since
   std::optional<Eigen::Vector2d> door;  ///< direction of the wall to go through

@@ -6,6 +6,8 @@
 #include <array>
 
 #include "holdfast/io/yaml_block.hpp"
+#include "simulation/buildings/plain_house.hpp"
+#include "simulation/buildings/tunnel.hpp"
 #include "simulation/files/model_files.hpp"
 #include "simulation/files/storage.hpp"
 
@@ -65,22 +67,44 @@ std::string keys_of(std::string_view name) {
   return io::config_reference(fields);
 }
 
+/// The list below `key`, or nothing.
+Result<YAML::Node> list_below(const YAML::Node& block, const char* key, const std::string& file) {
+  const YAML::Node list = block.IsMap() ? block[key] : YAML::Node();
+  if (list.IsDefined() && !list.IsNull() && !list.IsSequence()) {
+    return at(file, list,
+              fmt::format("{}: expected a list, found {}", key, io::describe_node(list)));
+  }
+  return list;
+}
+
 Status build_wall(const YAML::Node& block, const std::string& file, WorldBuilder& build) {
   WallPart wall;
   const std::string place = place_of(file, block);
   if (auto read = read_part(without(block, {"openings"}), place, file, wall); !read) return read;
-  const YAML::Node openings = block.IsMap() ? block["openings"] : YAML::Node();
-  if (openings.IsDefined() && !openings.IsNull() && !openings.IsSequence()) {
-    return at(file, openings,
-              fmt::format("openings: expected a list, found {}", io::describe_node(openings)));
-  }
-  for (const YAML::Node& node : openings) {
+  const auto openings = list_below(block, "openings", file);
+  if (!openings) return openings.error();
+  for (const YAML::Node& node : *openings) {
     OpeningPart hole;
     if (auto read = read_part(node, place_of(file, node), file, hole); !read) return read;
     hole.opening.back = material_of(hole.back);
     wall.plan.openings.push_back(hole.opening);
   }
   wall.add_to(build);
+  return Done{};
+}
+
+Status build_tunnel(const YAML::Node& block, const std::string& file, WorldBuilder& build) {
+  Tunnel tunnel;
+  const std::string place = place_of(file, block);
+  if (auto read = read_part(without(block, {"recesses"}), place, file, tunnel); !read) return read;
+  const auto recesses = list_below(block, "recesses", file);
+  if (!recesses) return recesses.error();
+  for (const YAML::Node& node : *recesses) {
+    TunnelRecess recess;
+    if (auto read = read_part(node, place_of(file, node), file, recess); !read) return read;
+    tunnel.recesses.push_back(recess);
+  }
+  tunnel.add_to(build);
   return Done{};
 }
 
@@ -199,6 +223,9 @@ constexpr std::array kParts = {
     kind<PolePart>("pole", "lamp post or sign"),
     kind<CarPart>("car", "parked car, 4.4 m long"),
     kind<HousePart>("house", "house with windows, doors and pillars on all sides"),
+    kind<PlainHouse>("plain_house", "house of brick with two rows of windows on all sides"),
+    PartKind{"tunnel", "vaulted road tunnel with a bend; `recesses` is a list of doors and niches",
+             build_tunnel, keys_of<Tunnel>},
     kind<RackPart>("rack", "pallet rack with loads, along y before it is turned"),
     PartKind{"mesh", "triangles of a .ply or .obj file", build_model<MeshPart>, keys_of<MeshPart>},
     PartKind{"cloud", "points of a .pcd or .ply file, as discs that close its surfaces",
@@ -250,6 +277,7 @@ std::string part_reference() {
   for (const PartKind& kind : kParts) {
     list += fmt::format("- `{}`: {}\n", kind.name, kind.summary);
     if (kind.keys != nullptr) keys += kind.keys(kind.name) + "\n";
+    if (kind.name == "tunnel") keys += keys_of<TunnelRecess>("recesses of a tunnel") + "\n";
     if (kind.name == "wall") keys += keys_of<OpeningPart>("openings of a wall") + "\n";
   }
   return list + "\n" + keys;

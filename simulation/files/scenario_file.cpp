@@ -25,7 +25,7 @@ class ScenarioReader {
   Result<Scenario> read(const YAML::Node& document) {
     if (!document.IsMap()) return expected(document, "a block of keys");
     const auto keys = check_keys(document, {"name", "summary", "world", "route", "drive", "people",
-                                            "vehicles", "lifts", "regions"});
+                                            "groups", "vehicles", "lifts", "regions"});
     if (!keys) return keys.error();
     for (const char* key : {"world", "route"}) {
       if (!document[key]) return Error{fmt::format("{}: missing: '{}'", file_, key)};
@@ -42,6 +42,11 @@ class ScenarioReader {
     auto people = read_people(document["people"]);
     if (!people) return people.error();
     scenario.walkers = std::move(*people);
+    if (document["groups"]) {
+      if (auto groups = read_block(document["groups"], scenario.groups); !groups) {
+        return groups.error();
+      }
+    }
     auto vehicles = read_vehicles(document["vehicles"]);
     if (!vehicles) return vehicles.error();
     scenario.vehicles = std::move(*vehicles);

@@ -44,6 +44,7 @@ foot to their second. [garage.yaml](../simulation/scenarios/garage.yaml) and
 - `people` is a list of a `route` and a `speed_m_s` each, `vehicles` likewise with a `kind`
   (car, van, bus); they keep to the direction of their routes. Who walks or drives waits
   where the robot comes near.
+- `groups` are people who now and then come to the robot and stand by it or go with it.
 - Where a corner of the robot's route stands straight above the one before, a lift takes the
   robot there; `lifts` says what it looks like ([lift.yaml](../simulation/scenarios/lift.yaml)).
   Who surveys a world takes the stairs: the map shows closed landing doors, and no cabin.
@@ -85,8 +86,8 @@ std::string keys_of(const char* name) {
 }  // namespace
 
 std::string simulator_reference() {
-  const std::string keys = keys_of<DriveStyle>("drive") + "\n" + keys_of<LiftPlan>("lifts") + "\n" +
-                           keys_of<Region>("regions");
+  const std::string keys = keys_of<DriveStyle>("drive") + "\n" + keys_of<GroupPlan>("groups") +
+                           "\n" + keys_of<LiftPlan>("lifts") + "\n" + keys_of<Region>("regions");
   const std::string lidars =
       fmt::format(fmt::runtime(kLidars), fmt::join(lidar_names(), ", ")) + lidar_reference();
   return std::string(kWorlds) + keys + "\n## Parts of the world\n\n" + part_reference() +

@@ -88,6 +88,7 @@ struct RampPart {
 struct CylinderPart {
   Eigen::Vector3d base{0, 0, 0};
   double radius = 0.2, height = 3;
+  int segments = 48;
   std::string material = "concrete";
   bool has_base = false;
 
@@ -96,10 +97,11 @@ struct CylinderPart {
     visit("base", self.base, FieldDoc{"middle of its foot, x y z"}, &self.has_base);
     visit("radius", self.radius, FieldDoc{"of its mantle", 1e-3, 1e4});
     visit("height", self.height, FieldDoc{"from its foot up", 1e-3, 1e4});
+    visit("segments", self.segments, FieldDoc{"flat pieces of its mantle", 3, 1000});
     visit("material", self.material, material_doc());
   }
   void add_to(WorldBuilder& build) const {
-    build.cylinder(base, radius, height, material_of(material));
+    build.cylinder(base, radius, height, material_of(material), segments);
   }
 };
 

@@ -55,6 +55,30 @@ people:
   EXPECT_NEAR(shed.route.length(), 44 - saved, 1e-9);
 }
 
+TEST(ScenarioFile, HoldsATunnelWithRecesses) {
+  const std::string tube = "world:\n  - tunnel: {length: 10, curve_begin: 10, curve_length: 0";
+  const Scenario bare = parsed(tube + "}" + kRoute);
+  const Scenario niche = parsed(tube + ", recesses: [{at: 3, kind: niche, side: left}]}" + kRoute);
+  // A wall's face becomes one at each side and one above; below the kerb's height one more, and the
+  // niche has five sides.
+  EXPECT_EQ(niche.world.triangles.size(), bare.world.triangles.size() + 2U * (3 + 5));
+  expect_complaint(tube + ", recesses: [{at: 3, kind: hole}]}" + kRoute,
+                   {"shed.yaml:", "kind", "door|niche"});
+  expect_complaint(tube + ", recesses: 3}" + kRoute, {"recesses", "a list"});
+}
+
+TEST(ScenarioFile, HoldsGroupsWhoComeToTheRobot) {
+  const Scenario shed = parsed(std::string(R"(
+world:
+  - floor: {min: [0, 0], max: [20, 10]}
+groups: {people: 4, near_m: 0.9}
+)") + kRoute);
+  EXPECT_EQ(shed.groups.people, 4);
+  EXPECT_EQ(shed.groups.near_m, 0.9);
+  EXPECT_EQ(shed.groups.lasts_s, GroupPlan{}.lasts_s);
+  expect_complaint(std::string("world: []\ngroups: {people: 40}") + kRoute, {"people", "40"});
+}
+
 TEST(ScenarioFile, RepeatsPartsAStepOnEachTime) {
   const Scenario rows = parsed(std::string(R"(
 world:
