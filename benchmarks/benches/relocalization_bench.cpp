@@ -10,7 +10,7 @@
 #include "benchmarks/harness/scratch_folder.hpp"
 #include "benchmarks/harness/table.hpp"
 #include "benchmarks/relocalization/lost_moments.hpp"
-#include "evaluation/evaluation.hpp"
+#include "evaluation/evaluate.hpp"
 #include "evaluation/result/number_text.hpp"
 #include "holdfast/core/stage_clock.hpp"
 
@@ -20,8 +20,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using relocalization::SearchOutcome;
 
-constexpr std::array kScenarios = {"corridor", "office",  "hall",    "warehouse", "yard",
-                                   "tunnel",   "garage",  "offices", "campus"};
+constexpr std::array kScenarios = {"corridor", "office", "hall",    "warehouse", "yard",
+                                   "tunnel",   "garage", "offices", "campus"};
 constexpr std::array kChangedShares = {0.0, 0.2};
 constexpr std::string_view kQueries[] = {"one scan", "six scans"};
 
@@ -171,7 +171,8 @@ Result<BenchReport> measure_relocalization(const BenchOptions& options) {
   report.data["failures"] = failures;
   report.markdown = table.markdown();
   report.markdown +=
-      "\nThe search alone, at random moments of drives in surveyed worlds; wrong is more than 0.5 m "
+      "\nThe search alone, at random moments of drives in surveyed worlds; wrong is more than 0.5 "
+      "m "
       "or 5 degrees off. Time is that of one thread.\n";
   for (const std::string& failure : failures) {
     report.markdown += fmt::format("\nNot driven: {}\n", failure);
