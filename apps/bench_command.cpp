@@ -44,7 +44,7 @@ std::string list_of_benches() {
   std::string text = "Benches:\n";
   for (const auto& info : benchmarks::benches()) {
     const std::string name(info.name);
-    text += "  " + name + std::string(12 - name.size(), ' ') + std::string(info.summary) + "\n";
+    text += "  " + name + std::string(16 - name.size(), ' ') + std::string(info.summary) + "\n";
   }
   return text;
 }

@@ -14,7 +14,7 @@
 namespace holdfast::benchmarks {
 namespace {
 
-constexpr std::array<BenchInfo, 12> kBenches = {{
+constexpr std::array<BenchInfo, 13> kBenches = {{
     {"step",
      "time of a step, beside a k-d-tree registration and plain reading of the log",
      {1, 1},
@@ -38,6 +38,13 @@ constexpr std::array<BenchInfo, 12> kBenches = {{
      {1, 10},
      30,
      measure_detection,
+     true,
+     true},
+    {"relocalization",
+     "the global search alone: found right, wrong or not at all, time and work",
+     {1, 3},
+     60,
+     measure_relocalization,
      true,
      true},
     {"regions",

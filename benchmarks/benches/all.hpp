@@ -27,6 +27,12 @@ Result<BenchReport> measure_scenarios(const BenchOptions& options);
 /// threshold would give, and whether the probability means something. `threads` places are driven
 /// through at a time, each on one thread.
 Result<BenchReport> measure_detection(const BenchOptions& options);
+
+/// The global search alone, at random moments of drives, in worlds as surveyed and changed, with
+/// one scan and with six: how often it finds the pose, a wrong one, or none; time and work.
+/// `threads` places are driven through at a time, each on one thread.
+Result<BenchReport> measure_relocalization(const BenchOptions& options);
+
 /// The campus in one drive of its whole way (at most `duration_s` of it), in its own survey: errors
 /// and claims by its regions. `threads` cast rays and fit surfaces; the localizer has one.
 Result<BenchReport> measure_regions(const BenchOptions& options);

@@ -21,7 +21,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr float kGrownM = 0.0F;
+constexpr float kGrownM = 0.1F;
 constexpr float kAsideM = 6.0F;
 constexpr std::size_t kLeastPoints = 40;  // spread ones; fewer say too little
 constexpr std::size_t kRoughPoints = 160;

@@ -26,7 +26,7 @@ constexpr double kRobustScale = 3.0;
 constexpr double kFewPairs = 20.0;
 constexpr double kUnknownSigmaM = 10.0;
 constexpr double kOpenSigmaM = 0.2;  // a direction known worse than that is not determined
-constexpr double kElsewhere = 0.02;  // probability of none of the candidates, before looking
+constexpr double kElsewhere = 0.05;  // probability of none of the candidates, before looking
 
 // What tells poses apart.
 constexpr float kOddsOfASurface = 80;  // residuals of 2 cm against returns from within a metre
