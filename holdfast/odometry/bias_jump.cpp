@@ -14,15 +14,15 @@ using filter::FilterState;
 using filter::Matrix15d;
 using Vector6d = BiasJump::Vector6d;
 
-constexpr double kAccelSigma = 0.3;   // m/s^2, of jumps
-constexpr double kGyroSigma = 0.03;   // rad/s
-constexpr double kLargest = 3.0;      // sigmas
+constexpr double kAccelSigma = 0.3;  // m/s^2, of jumps
+constexpr double kGyroSigma = 0.03;  // rad/s
+constexpr double kLargest = 3.0;     // sigmas
 constexpr double kLikely = 60.0;     // twice the log likelihood ratio
 constexpr double kExplained = 0.9;   // of what was surprising
 constexpr double kLeastShare = 0.8;  // of the usual one
 constexpr int kLeastScans = 3;       // 18 innovations against 6 unknowns
 constexpr double kStrongM = 0.01;    // a direction that one scan determines so well is heard
-constexpr double kLeverM = 10.0;      // of a rotation, to be compared with a way
+constexpr double kLeverM = 10.0;     // of a rotation, to be compared with a way
 
 /// Innovations of a scan in the directions that it determines well.
 struct Innovation {
@@ -117,8 +117,7 @@ void BiasJumpWatch::correct(const Matrix15d& left, const Eigen::Matrix<double, 3
   const Eigen::Matrix<double, 15, 6> gain_pose = (Matrix15d::Identity() - left).leftCols<6>();
   for (std::size_t i = 0; i < count_; ++i) {
     BiasJump& jump = onsets_[i].jump;
-    const Eigen::Matrix<double, 15, 6> after =
-        jump.now - gain_pose * seen(jump.now, age_s_);
+    const Eigen::Matrix<double, 15, 6> after = jump.now - gain_pose * seen(jump.now, age_s_);
     jump.gravity += gain * (after - jump.now);
     jump.now = after;
   }

@@ -63,8 +63,7 @@ struct Rig {
     seen.T_map_body = {so3::exp(noise_now.tail<3>()), noise_now.head<3>() + shift};
     Matrix6d S = state.P.topLeftCorner<6, 6>();
     S.diagonal() += sigma.cwiseAbs2();
-    const Eigen::Matrix<double, 15, 6> gain =
-        S.ldlt().solve(state.P.topRows<6>()).transpose();
+    const Eigen::Matrix<double, 15, 6> gain = S.ldlt().solve(state.P.topRows<6>()).transpose();
     const Vector6d innovation = seen.minus(state).head<6>();
     state.add(gain * innovation);
     filter::Matrix15d left = filter::Matrix15d::Identity();
