@@ -58,7 +58,8 @@ Matrix15d GravityEstimate::predict(const FilterState& before, FilterState& predi
   return with_before;
 }
 
-void GravityEstimate::correct(const FilterState& predicted, const FilterState& after) {
+Eigen::Matrix<double, 3, 15> GravityEstimate::correct(const FilterState& predicted,
+                                                      const FilterState& after) {
   const Eigen::Matrix<double, 3, 15> gain =
       predicted.P.ldlt().solve(cross_.transpose()).transpose();
   gravity_ += gain * after.minus(predicted);
@@ -69,6 +70,14 @@ void GravityEstimate::correct(const FilterState& predicted, const FilterState& a
        gain * after.P * gain.transpose();
   P_ = (0.5 * (P_ + P_.transpose())).eval();
   cross_ = gain * after.P;
+  return gain;
+}
+
+void GravityEstimate::allow_for(const BiasJump& jump) {
+  gravity_ += jump.gravity * jump.size;
+  P_ += jump.gravity * jump.P * jump.gravity.transpose();
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
+  cross_ += jump.gravity * jump.P * jump.now.transpose();
 }
 
 void GravityEstimate::forget_pose() { cross_.leftCols<9>().setZero(); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "holdfast/filter/filter_state.hpp"
+#include "holdfast/odometry/bias_jump.hpp"
 
 namespace holdfast::odometry {
 
@@ -26,12 +27,16 @@ class GravityEstimate {
   /// One transition serves all of it, so that the covariance of state and gravity stays one.
   /// Returns the covariance of the errors of `predicted` (rows) and `before`.
   filter::Matrix15d predict(const filter::FilterState& before, filter::FilterState& predicted);
-  /// After a scan has corrected `predicted` to `after`.
-  void correct(const filter::FilterState& predicted, const filter::FilterState& after);
+  /// After a scan has corrected `predicted` to `after`: returns by how much of the state's
+  /// correction gravity followed.
+  Eigen::Matrix<double, 3, 15> correct(const filter::FilterState& predicted,
+                                       const filter::FilterState& after);
   /// The errors of the state are now `change` times what they were.
   void change_errors(const filter::Matrix15d& change) { cross_ *= change.transpose(); }
   /// Pose and velocity begin anew; what is known of gravity and biases stays.
   void forget_pose();
+  /// The state's biases jumped.
+  void allow_for(const BiasJump& jump);
   /// The biases' covariance was replaced.
   void forget_biases();
 

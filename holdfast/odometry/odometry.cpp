@@ -225,6 +225,29 @@ bool Odometry::contradicted(const UpdateResult& update, double surprise) {
   return through_walls || (surprise > kSurprise && share < kFewOfUsual);
 }
 
+/// What the planes told may be for or against a jump of the biases.
+void Odometry::hear(const UpdateResult& update, const Passage& passage) {
+  if (rest_.is_assumed() || biases_before_hold_) jumps_.clear();
+  if (!update.usable) return;
+  const double share = update.equations.weight / static_cast<double>(scan_.selected.size());
+  jumps_.hear(passage.predicted, state_, share / usual_share_);
+}
+
+/// The biases jumped: all that followed from it is put right, as far as its size is known.
+void Odometry::allow_for(const BiasJump& jump, Passage& passage) {
+  const auto put_right = [&](const Eigen::Matrix<double, 15, 6>& told, FilterState& state) {
+    state.add(told * jump.size);
+    state.P += told * jump.P * told.transpose();
+    state.P = (0.5 * (state.P + state.P.transpose())).eval();
+  };
+  put_right(jump.before, passage.before);
+  put_right(jump.now, state_);
+  gravity_.allow_for(jump);
+  edge_reference_.allow_for(jump);
+  passage.now_before += jump.now * jump.P * jump.before.transpose();
+  jumps_.clear();
+}
+
 /// A bias may have jumped, or the IMU may be worse than its configured noise: does the scan fit
 /// better if the biases are let go? If not, all stays as it was.
 UpdateResult Odometry::release_biases(const UpdateResult& update, Passage& passage,
@@ -244,6 +267,7 @@ UpdateResult Odometry::release_biases(const UpdateResult& update, Passage& passa
   if (released.usable && released.equations.weight > kFitsBetter * update.equations.weight) {
     passage.predicted = predicted;
     passage.now_before = predicted_before;
+    jumps_.clear();
     return released;
   }
   state_ = held;
@@ -259,6 +283,8 @@ void Odometry::track(StageClock& clock, OdometryReport& report) {
     begin_epoch("too long without a scan that fits", report);
     return;
   }
+  jumps_.carry(passage.before, passage.predicted, passage.gravity_before.value(),
+               to_seconds(scan_.scan->end_time - scan_.scan->stamp));
   UpdateResult update = correct(clock);
   const double surprised = update.usable ? surprise(passage.predicted) : 0.0;
   if (contradicted(update, surprised)) {
@@ -271,6 +297,7 @@ void Odometry::track(StageClock& clock, OdometryReport& report) {
   } else {
     contradictions_ = 0;
     if (surprised > kSurprise) rest_.end();
+    hear(update, passage);
     if (surprised > kSurprise && state_.t >= last_surprise_ + kSettle) {
       update = release_biases(update, passage, clock, report);
     }
@@ -281,10 +308,15 @@ void Odometry::track(StageClock& clock, OdometryReport& report) {
 }
 
 /// What becomes of a scan that was matched, or could not be.
-void Odometry::accept(const UpdateResult& update, const Passage& passage, StageClock& clock,
+void Odometry::accept(const UpdateResult& update, Passage& passage, StageClock& clock,
                       OdometryReport& report) {
   report.corrected = update.usable;
-  if (update.usable) gravity_.correct(passage.predicted, state_);
+  if (update.usable) {
+    const auto gain = gravity_.correct(passage.predicted, state_);
+    jumps_.correct(state_.P * passage.predicted.P.ldlt().solve(filter::Matrix15d::Identity()),
+                   gain);
+    if (const auto jump = jumps_.believed()) allow_for(*jump, passage);
+  }
   add_increment(passage, report);
   describe(update, report);
   map_.follow(state_.T_map_body.translation);
@@ -296,6 +328,7 @@ void Odometry::accept(const UpdateResult& update, const Passage& passage, StageC
   }
   const filter::Matrix15d change = count_from_here(state_);
   gravity_.change_errors(change);
+  jumps_.change_errors(change);
   edge_reference_.change_errors(change);
   sigma_at_scan_m_ = filter::largest_sigma(state_.P, FilterState::kP);
   const double memory = keyframes_ == 0 ? 1.0 : kShareMemory;

@@ -4,6 +4,7 @@
 
 #include "holdfast/core/step_report.hpp"
 #include "holdfast/filter/rest.hpp"
+#include "holdfast/odometry/bias_jump.hpp"
 #include "holdfast/odometry/edges/edge_reference.hpp"
 #include "holdfast/odometry/gravity_estimate.hpp"
 #include "holdfast/odometry/increment.hpp"
@@ -101,11 +102,13 @@ class Odometry {
                                   StageClock& clock);
   filter::UpdateResult release_biases(const filter::UpdateResult& update, Passage& passage,
                                       StageClock& clock, OdometryReport& report);
+  void hear(const filter::UpdateResult& update, const Passage& passage);
+  void allow_for(const BiasJump& jump, Passage& passage);
   void keep_what_is_left(const filter::UpdateResult& update, Passage& passage) const;
   void correct_by_edges(const filter::UpdateResult& update, Passage& passage);
   double surprise(const filter::FilterState& predicted) const;
   bool contradicted(const filter::UpdateResult& update, double surprise);
-  void accept(const filter::UpdateResult& update, const Passage& passage, StageClock& clock,
+  void accept(const filter::UpdateResult& update, Passage& passage, StageClock& clock,
               OdometryReport& report);
   void extend_map();
   void begin_epoch(const char* reason, OdometryReport& report);
@@ -115,6 +118,7 @@ class Odometry {
 
   Setup setup_;
   GravityEstimate gravity_;
+  BiasJumpWatch jumps_;
   filter::Rest rest_;
   LocalMap map_;
   WorkerPool pool_;

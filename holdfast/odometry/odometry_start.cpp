@@ -92,6 +92,7 @@ void Odometry::wait_for_returns(OdometryReport& report) {
   state_.set_biases(biases);
   gravity_.forget_pose();
   keep_first_scan();
+  jumps_.clear();
   last_surprise_ = report.step.pose_time;
   phase_ = Phase::kFirstScan;
   report.step.state = State::kTracking;

@@ -9,6 +9,9 @@ namespace {
 
 using namespace filter::testing;
 
+const Vector3d kAccelJump(0.2, -0.2, 0.1);    // m/s^2
+const Vector3d kGyroJump(0.01, -0.02, 0.02);  // rad/s
+
 /// A body that goes straight on, scan after scan, with its IMU: at an even velocity from the start
 /// on, or from rest after a second, speeding up for another.
 struct Journey {
@@ -16,6 +19,7 @@ struct Journey {
   SE3 start{so3::exp({0.03, -0.02, 0.5}), {0.5, 0.4, 0.8}};  ///< T_map_body at the first scan's end
   Vector3d v_map = Vector3d::Zero();
   bool from_rest = false;
+  int jump_at = 1 << 30;  ///< scan after which both biases have jumped
   std::uint64_t seed = 1;
 
   /// Seconds at full speed that the way up to `t` s after the first scan's end takes.
@@ -40,8 +44,9 @@ struct Journey {
       const double t = 0.1 * number - 0.1 + 0.005 * i;
       const bool speeding = from_rest && t > 1.0 && t <= 2.0;
       const Vector3d a = speeding ? v_map : Vector3d(Vector3d::Zero());
-      odometry.add_imu({kStart + kRevolution * number + kRevolution * i / 20, Vector3d::Zero(),
-                        start.rotation.conjugate() * (a - kGravity)});
+      const double jumped = number > jump_at ? 1 : 0;
+      odometry.add_imu({kStart + kRevolution * number + kRevolution * i / 20, jumped * kGyroJump,
+                        start.rotation.conjugate() * (a - kGravity) + jumped * kAccelJump});
     }
   }
   OdometryReport step(Odometry& odometry, int number, bool returns = true) const {
@@ -198,6 +203,24 @@ TEST(Odometry, ARobotThatWasCarriedAwayBreaksAndGoesOn) {
   }
   EXPECT_GE(broke_at, 20);
   EXPECT_LE(broke_at, 25);
+}
+
+TEST(Odometry, AJumpOfTheBiasesIsFoundAndTheWayStaysRight) {
+  Journey journey;
+  journey.v_map = {0.5, 0.2, 0};
+  journey.from_rest = true;
+  journey.jump_at = 30;
+  Odometry odometry(setup());
+  const SE3 first = journey.step(odometry, 0).step.T_map_body;
+  for (int k = 1; k < 60; ++k) {
+    const OdometryReport report = journey.step(odometry, k);
+    EXPECT_FALSE(report.broke);
+    // A scan of a room of 8 m, turned by the jumped rate while it was taken, is bent by less.
+    EXPECT_LT(journey.error_m(report, first, k), 2 * kDriftM) << "scan " << k;
+  }
+  // Over two seconds a bias of this size would have moved the way by as much.
+  EXPECT_LT((odometry.state().gyro_bias - kGyroJump).norm(), 0.1 * kGyroJump.norm());
+  EXPECT_LT((odometry.state().accel_bias - kAccelJump).norm(), 0.2 * kAccelJump.norm());
 }
 
 TEST(Odometry, ABlackoutIsBridgedByTheImu) {

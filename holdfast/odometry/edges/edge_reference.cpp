@@ -68,4 +68,11 @@ void EdgeReference::correct(const std::vector<SeenEdge>& edges, const filter::Se
   P_way_ = (0.5 * (P_way_ + P_way_.transpose())).eval();
 }
 
+void EdgeReference::allow_for(const BiasJump& jump) {
+  const Eigen::Matrix<double, 3, 6> way = jump.now.topRows<3>();
+  P_way_ += way * jump.P * way.transpose();
+  P_way_ = (0.5 * (P_way_ + P_way_.transpose())).eval();
+  cross_ += jump.now * jump.P * way.transpose();
+}
+
 }  // namespace holdfast::odometry

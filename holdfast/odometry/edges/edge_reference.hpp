@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "holdfast/filter/filter_state.hpp"
+#include "holdfast/odometry/bias_jump.hpp"
 #include "holdfast/odometry/edges/edge_points.hpp"
 
 namespace holdfast::odometry {
@@ -31,6 +32,10 @@ class EdgeReference {
 
   /// The errors of the state were replaced by `change` times themselves.
   void change_errors(const filter::Matrix15d& change) { cross_ = (change * cross_).eval(); }
+
+  /// The state's biases jumped, and it was put right; since when the reference stands is taken for
+  /// longer ago.
+  void allow_for(const BiasJump& jump);
 
   /// There is none: the next scan begins one.
   void clear() { edges_.clear(); }
