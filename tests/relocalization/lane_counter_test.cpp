@@ -22,7 +22,8 @@ TEST(LaneCounter, CountsEachLaneAsOneWouldByHand) {
     counter.add8(words);
   }
   for (int lane = 0; lane < 64; ++lane) EXPECT_EQ(counter.count(lane), expected[lane]);
-  EXPECT_EQ(counter.largest(~std::uint64_t{0}), *std::max_element(expected.begin(), expected.end()));
+  EXPECT_EQ(counter.largest(~std::uint64_t{0}),
+            *std::max_element(expected.begin(), expected.end()));
   EXPECT_EQ(counter.largest(std::uint64_t{1} << 7), expected[7]);
   for (int lane = 0; lane < 64; ++lane) {
     EXPECT_EQ(counter.at_least(expected[7]) >> lane & 1U, expected[lane] >= expected[7] ? 1U : 0U);
