@@ -30,6 +30,7 @@ function(holdfast_test name)
   add_executable(${name}_tests ${sources})
   target_link_libraries(${name}_tests PRIVATE ${ARG_LINK} GTest::gtest GTest::gmock
     GTest::gtest_main)
+  target_precompile_headers(${name}_tests REUSE_FROM test_headers)
   if(ARG_INTEGRATION)
     set(label integration)
   else()

@@ -1,5 +1,6 @@
 #include "holdfast/pipeline/graph/placement.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <numbers>

@@ -10,7 +10,7 @@ namespace holdfast::monitor {
 struct BeliefConfig {
   double wrong_at_start = 0.05;
   double wrong_per_s = 1e-4;
-  double wrong_after_break = 0.5;
+  double wrong_after_break = 0.1;
   double found_again_per_s = 3e-3;
   double news_after_m = 1.0;
   double news_after_s = 5.0;

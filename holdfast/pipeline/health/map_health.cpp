@@ -18,7 +18,7 @@ constexpr double kWrongRad = 5.0 * std::numbers::pi / 180.0;
 constexpr double kReachM = 6.0;         // of a place: twice the way to the next one
 constexpr double kPlaceWorth = 15.0;    // looks: how far a place tells what is usual near it
 constexpr float kRaysM = 1500;          // in all: 100 rays of 15 m
-constexpr double kBreakLogRatio = 9.0;  // even chances, where they were one in ten thousand
+constexpr double kBreakLogRatio = 7.0;  // one in ten, where it was one in ten thousand
 
 /// Probability that an error with this sigma, in its worst direction, is greater than `limit`.
 double p_beyond(double limit, double sigma) {
