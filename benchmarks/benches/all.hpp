@@ -28,10 +28,16 @@ Result<BenchReport> measure_scenarios(const BenchOptions& options);
 /// through at a time, each on one thread.
 Result<BenchReport> measure_detection(const BenchOptions& options);
 
+/// Kidnaps, instant and carried, and starts without a pose, over scenarios and seeds, in worlds as
+/// surveyed and changed: how many the whole system makes up for in 3 s, how soon, and how often it
+/// takes a pose over that is wrong. `threads` places are driven through at a time, each on one
+/// thread (and one for its searches).
+Result<BenchReport> measure_relocalization(const BenchOptions& options);
+
 /// The global search alone, at random moments of drives, in worlds as surveyed and changed, with
 /// one scan and with six: how often it finds the pose, a wrong one, or none; time and work.
 /// `threads` places are driven through at a time, each on one thread.
-Result<BenchReport> measure_relocalization(const BenchOptions& options);
+Result<BenchReport> measure_search(const BenchOptions& options);
 
 /// The campus in one drive of its whole way (at most `duration_s` of it), in its own survey: errors
 /// and claims by its regions. `threads` cast rays and fit surfaces; the localizer has one.

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "benchmarks/benches/all.hpp"
-#include "benchmarks/benches/filter_run.hpp"
 #include "benchmarks/drives/drive_series.hpp"
+#include "benchmarks/drives/filter_run.hpp"
 #include "benchmarks/drives/localization.hpp"
 #include "benchmarks/harness/figures.hpp"
 #include "benchmarks/harness/scratch_folder.hpp"

@@ -90,13 +90,6 @@ Alarms as_printed(const MonitoredDrive& drive) {
   return alarms_by_dual_index(drive, monitor::DualIndexConfig{});
 }
 
-std::string interval_text(const evaluation::Share& share) {
-  if (share.of == 0) return "-";
-  const evaluation::Interval i = evaluation::interval_95(share);
-  return fmt::format("{} [{}, {}]", evaluation::share_text(share.value()),
-                     evaluation::share_text(i.low), evaluation::share_text(i.high));
-}
-
 Json json_of(const DetectionScore& score) {
   const evaluation::Interval missed = evaluation::interval_95(score.missed);
   return {{"events", score.missed.of},

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "benchmarks/benches/all.hpp"
-#include "benchmarks/benches/filter_run.hpp"
+#include "benchmarks/drives/filter_run.hpp"
 #include "benchmarks/drives/localization.hpp"
 #include "benchmarks/harness/figures.hpp"
 #include "benchmarks/harness/scratch_folder.hpp"

@@ -23,7 +23,7 @@ evaluation::StepRow row_of(const StepReport& report) {
 
 Result<std::vector<StepReport>> localize(SensorSource& source, const pipeline::Config& config,
                                          const std::filesystem::path& map_dir,
-                                         const SE3& initial_pose) {
+                                         const std::optional<SE3>& initial_pose) {
   auto map = map::PriorMap::open(map_dir);
   if (!map) return map.error();
   auto localizer = pipeline::Localizer::create(config, std::move(*map), initial_pose);

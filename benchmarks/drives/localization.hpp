@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "benchmarks/drives/surveyed_drive.hpp"
@@ -8,10 +9,11 @@
 
 namespace holdfast::benchmarks {
 
-/// Localizes `source` as `holdfast localize` does, without writing files.
+/// Localizes `source` as `holdfast localize` does, without writing files. No initial pose: the map
+/// is searched for it.
 Result<std::vector<StepReport>> localize(SensorSource& source, const pipeline::Config& config,
                                          const std::filesystem::path& map_dir,
-                                         const SE3& initial_pose);
+                                         const std::optional<SE3>& initial_pose);
 
 /// The claims of a run.
 evaluation::Trajectory claims_of(const std::vector<StepReport>& steps);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evaluation/statistics.hpp"
+#include "evaluation/result/number_text.hpp"
 
 namespace holdfast::benchmarks {
 
@@ -40,6 +40,13 @@ std::string ratio_text(double ratio) {
   if (!std::isfinite(ratio)) return "-";
   const int decimals = ratio < 9.995 ? 2 : ratio < 99.95 ? 1 : 0;
   return fmt::format("{:.{}f} x", ratio, decimals);
+}
+
+std::string interval_text(const evaluation::Share& share) {
+  if (share.of == 0) return "-";
+  const evaluation::Interval i = evaluation::interval_95(share);
+  return fmt::format("{} [{}, {}]", evaluation::share_text(share.value()),
+                     evaluation::share_text(i.low), evaluation::share_text(i.high));
 }
 
 std::string memory_text(double megabytes) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/statistics.hpp"
+
 /// Figures as they enter tables and JSON.
 namespace holdfast::benchmarks {
 
@@ -39,6 +41,9 @@ double largest(const std::vector<double>& values);
 
 /// "11.7 x" with three digits; "-" for what is not known.
 std::string ratio_text(double ratio);
+
+/// "0.98 [0.95, 0.99]": a share and its 95 % interval; "-" of nothing.
+std::string interval_text(const evaluation::Share& share);
 
 /// "143 MB".
 std::string memory_text(double megabytes);

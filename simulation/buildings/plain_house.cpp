@@ -25,8 +25,7 @@ std::vector<WallOpening> windows(double begin, double end, double step, double u
 }  // namespace
 
 void PlainHouse::add_to(WorldBuilder& build) const {
-  const std::array<Vector2d, 4> corners = {
-      {min, {min.x(), max.y()}, max, {max.x(), min.y()}}};
+  const std::array<Vector2d, 4> corners = {{min, {min.x(), max.y()}, max, {max.x(), min.y()}}};
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vector2d& from = corners[i];
     const Vector2d& to = corners[(i + 1) % corners.size()];

@@ -102,13 +102,13 @@ class Tube {
       const Vector2d& a = corners[i];
       const Vector2d& b = corners[i + 1];
       build_.quad(from.at(a.x(), a.y()), to.at(a.x(), a.y()), to.at(b.x(), b.y()),
-                 from.at(b.x(), b.y()), materials::kConcrete);
+                  from.at(b.x(), b.y()), materials::kConcrete);
     }
   }
 
   /// A strip of ground between two sections, from y0 on the right to y1 on the left.
-  void add_strip(const Section& from, const Section& to, double y0, double y1,
-                 double z, const Material& material) {
+  void add_strip(const Section& from, const Section& to, double y0, double y1, double z,
+                 const Material& material) {
     build_.quad(from.at(y0, z), to.at(y0, z), to.at(y1, z), from.at(y1, z), material);
   }
 
@@ -118,9 +118,9 @@ class Tube {
     add_strip(from, to, -half_width(), -edge, kKerbHeight, materials::kConcrete);
     add_strip(from, to, edge, half_width(), kKerbHeight, materials::kConcrete);
     build_.quad(to.at(edge, 0), from.at(edge, 0), from.at(edge, kKerbHeight),
-               to.at(edge, kKerbHeight), materials::kConcrete);
+                to.at(edge, kKerbHeight), materials::kConcrete);
     build_.quad(from.at(-edge, 0), to.at(-edge, 0), to.at(-edge, kKerbHeight),
-               from.at(-edge, kKerbHeight), materials::kConcrete);
+                from.at(-edge, kKerbHeight), materials::kConcrete);
   }
 
   void add_tube() {
@@ -147,7 +147,7 @@ class Tube {
       const Vector2d& a = corners[i];
       const Vector2d& b = corners[i + 1];
       build_.quad(face(b.x(), b.y()), face(a.x(), a.y()), face(a.x(), kFaceHeight),
-                 face(b.x(), kFaceHeight), materials::kBrick);
+                  face(b.x(), kFaceHeight), materials::kBrick);
     }
   }
 

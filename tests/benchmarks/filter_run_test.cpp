@@ -1,4 +1,4 @@
-#include "benchmarks/benches/filter_run.hpp"
+#include "benchmarks/drives/filter_run.hpp"
 
 #include <gtest/gtest.h>
 

@@ -63,7 +63,7 @@ TEST(Belief, WhatWasSeenBeforeDoesNotHideThatTheRobotWasCarried) {
   ASSERT_LT(belief.p_wrong(), 1e-6);
   belief.pass(kScan, 0.1, {true, 0, 0});
   belief.hear(against(3), {});
-  EXPECT_GT(belief.p_wrong(), 0.9);
+  EXPECT_NEAR(logit(belief.p_wrong()), logit(BeliefConfig{}.wrong_after_break) + 3, 0.1);
 }
 
 TEST(Belief, ADropOfWhatAgreesIsHeldAgainstHowOftenPosesBecomeWrong) {

@@ -1,7 +1,7 @@
 #include "holdfast/pipeline/graph/placement.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include <numbers>
 
