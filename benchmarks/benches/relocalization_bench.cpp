@@ -101,9 +101,9 @@ void tell(const std::vector<Case>& cases, const std::vector<std::string>& names,
   Table kinds = score_table("loss"), worlds = score_table("world");
   for (std::size_t loss = 0; loss < std::size(kLossNames); ++loss) {
     for (const double share : kChangedShares) {
-      const std::string name = fmt::format("{}, {}", kLossNames[loss],
-                                           share > 0 ? fmt::format("{:.0f} % changed", 100 * share)
-                                                     : "as surveyed");
+      const std::string name =
+          fmt::format("{}, {}", kLossNames[loss],
+                      share > 0 ? fmt::format("{:.0f} % changed", 100 * share) : "as surveyed");
       const auto selects = [&](const Case& c) {
         return c.recovery.loss == static_cast<Loss>(loss) && c.changed_share == share;
       };
@@ -111,9 +111,11 @@ void tell(const std::vector<Case>& cases, const std::vector<std::string>& names,
     }
   }
   for (const std::string& name : names) {
-    add_row(worlds, name, cases, [&](const Case& c) { return c.scenario == name; }, report);
+    add_row(
+        worlds, name, cases, [&](const Case& c) { return c.scenario == name; }, report);
   }
-  add_row(worlds, "all", cases, [](const Case&) { return true; }, report);
+  add_row(
+      worlds, "all", cases, [](const Case&) { return true; }, report);
   report.markdown += fmt::format("{}\n{}", kinds.markdown(), worlds.markdown());
 }
 
@@ -144,15 +146,12 @@ std::vector<std::string> names_of(const BenchOptions& options) {
 
 Json json_of_case(const Case& c) {
   const Recovery& r = c.recovery;
-  Json j = {{"scenario", c.scenario},
-            {"seed", c.seed},
-            {"changed_share", c.changed_share},
-            {"loss", kLossNames[static_cast<std::size_t>(r.loss)]},
-            {"t_s", to_seconds(r.t)},
-            {"aliased_s", to_seconds(r.apart - r.t)},
-            {"searches", r.searches},
-            {"false_relocalizations", r.false_relocalizations},
-            {"misleading_s", r.misleading_s}};
+  Json j = {
+      {"scenario", c.scenario},           {"seed", c.seed},
+      {"changed_share", c.changed_share}, {"loss", kLossNames[static_cast<std::size_t>(r.loss)]},
+      {"t_s", to_seconds(r.t)},           {"aliased_s", to_seconds(r.apart - r.t)},
+      {"searches", r.searches},           {"false_relocalizations", r.false_relocalizations},
+      {"misleading_s", r.misleading_s}};
   j["found_after_s"] = known(r.found_after_s.value_or(HUGE_VAL));
   return j;
 }
@@ -193,7 +192,8 @@ Result<BenchReport> measure_relocalization(const BenchOptions& options) {
       "places are aliased), the alarm and the search's virtual latency included. Wrong: more than "
       "0.5 m or 5 degrees off.\n",
       seeds, names.size());
-  for (const std::string& failure : failures) report.markdown += fmt::format("\nNot driven: {}\n", failure);
+  for (const std::string& failure : failures)
+    report.markdown += fmt::format("\nNot driven: {}\n", failure);
   return report;
 }
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr TimeNs kHold = 2 * kSecond;
 constexpr std::size_t kHoldScans = 18;
+constexpr TimeNs kLongestScan = kSecond / 10;
 constexpr TimeNs kCarry = 5 * kSecond;
 constexpr std::size_t kCarriedOneIn = 3;
 constexpr double kAskEveryM = 2;  // whether the place looks like others
@@ -85,20 +86,21 @@ Status skip(SensorSource& source) {
   }
 }
 
-/// All steps of robots that are switched on, without a pose, at each of `losses`.
-Result<std::vector<StepReport>> start_at(const std::vector<Recovery>& losses,
-                                         simulation::Simulation& drive,
-                                         const SurveyedDrive& surveyed) {
+/// All steps of robots that are switched on, without a pose, after each of `losses`: from the first
+/// scan on that saw nothing of the place before.
+Result<std::vector<StepReport>> start_after(std::vector<Recovery>& losses,
+                                            simulation::Simulation& drive,
+                                            const SurveyedDrive& surveyed) {
   std::vector<StepReport> all;
   Until part(drive);
   for (std::size_t i = 0; i < losses.size(); ++i) {
-    part.set_end(losses[i].t);
-    if (i == 0) {
-      if (auto skipped = skip(part); !skipped) return skipped.error();
-    }
+    part.set_end(losses[i].t + kLongestScan);
+    if (auto skipped = skip(part); !skipped) return skipped.error();
     part.set_end(i + 1 < losses.size() ? losses[i + 1].t : drive.end_time() + kSecond);
     const auto steps = localize(part, surveyed.config, surveyed.map_dir, std::nullopt);
     if (!steps) return steps.error();
+    if (!steps->empty()) losses[i].t = steps->front().pose_time;
+    losses[i].apart = std::max(losses[i].apart, losses[i].t);
     all.insert(all.end(), steps->begin(), steps->end());
   }
   return all;
@@ -158,16 +160,15 @@ Result<std::vector<Recovery>> recover_all(DriveSpec spec, const SurveyedDrive& s
   if (!drive) return drive.error();
   std::vector<Recovery> losses = losses_of(**drive);
   look_for_aliases(**drive, losses);
-  const auto steps =
-      localize(**drive, surveyed.config, surveyed.map_dir, (*drive)->initial_pose());
+  const auto steps = localize(**drive, surveyed.config, surveyed.map_dir, (*drive)->initial_pose());
   if (!steps) return steps.error();
   std::vector<Recovery> all = score_all(losses, *steps, **drive);
 
   auto again = make_drive(spec);
   if (!again) return again.error();
-  const auto starts = start_at(losses, **again, surveyed);
-  if (!starts) return starts.error();
   for (Recovery& loss : losses) loss.loss = Loss::kStart;
+  const auto starts = start_after(losses, **again, surveyed);
+  if (!starts) return starts.error();
   for (const Recovery& r : score_all(losses, *starts, **drive)) all.push_back(r);
   return all;
 }

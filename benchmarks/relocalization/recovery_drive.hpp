@@ -24,8 +24,8 @@ struct Recovery {
   TimeNs t = 0;          ///< when the LiDAR sees the other place; of a start: its first scan
   TimeNs apart = 0;      ///< from when on no other place looks the same within noise
   bool aliased = false;  ///< `apart` is later than `t`
-  /// From `apart` to the first of scans that are, for 2 s and at least 18 of them, trusted (TRACKING
-  /// or DEGRADED) and at most 0.3 m and 5 degrees off.
+  /// From `apart` to the first of scans that are, for 2 s and at least 18 of them, trusted
+  /// (TRACKING or DEGRADED) and at most 0.3 m and 5 degrees off.
   std::optional<double> found_after_s;
   int searches = 0;
   int false_relocalizations = 0;  ///< poses taken over that were more than 0.5 m or 5 degrees off
@@ -45,7 +45,8 @@ struct LossPlan {
 };
 
 /// Drives with kidnaps, every third one carried, in the world and map of `surveyed`, which was made
-/// from `spec`; and once more, but there the robot is switched on without a pose at the end of each.
+/// from `spec`; and once more, but there the robot is switched on without a pose at the end of
+/// each.
 Result<std::vector<Recovery>> recover_all(DriveSpec spec, const SurveyedDrive& surveyed,
                                           const LossPlan& plan);
 

@@ -67,6 +67,10 @@ class Odometry {
   const filter::FilterState& state() const { return state_; }
   /// In the odometry's frame, m/s^2; along -z but for the error of the first levelling.
   const Eigen::Vector3d& gravity() const { return gravity_.value(); }
+  /// Standard deviation of its direction, rad, the larger of the two axes.
+  double gravity_sigma_rad() const {
+    return gravity_.sigma().head<2>().maxCoeff() / gravity_.value().norm();
+  }
   const LocalMap& map() const { return map_; }
   /// Of the newest scan, in the body frame at its end.
   const registration::BodyPoints& points() const { return work_.points; }

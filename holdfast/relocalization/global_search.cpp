@@ -9,6 +9,7 @@
 #include "holdfast/map/prior_map.hpp"
 #include "holdfast/places/places.hpp"
 #include "holdfast/relocalization/judging/judge.hpp"
+#include "holdfast/relocalization/judging/prospects.hpp"
 #include "holdfast/relocalization/occupancy/occupancy_pyramid.hpp"
 #include "holdfast/relocalization/occupancy/standpoints.hpp"
 #include "holdfast/relocalization/wide/spread_points.hpp"
@@ -30,11 +31,8 @@ constexpr std::size_t kMostFine = 60;
 constexpr std::size_t kFullPoints = 2500;
 constexpr std::size_t kMostRefined = 20;
 constexpr double kFocusM = 60.0;
-constexpr double kWideWork = 8.0;   // look-ups of the grid that take the time of a pair
-constexpr double kFarthestM = 1.5;  // that a refined pose may be from its mode
-constexpr double kMostTilt = 3.0 * std::numbers::pi / 180.0;
-constexpr double kSameM = 0.3;
-constexpr double kSameRad = 3.0 * std::numbers::pi / 180.0;
+constexpr double kWideWork = 8.0;  // look-ups of the grid that take the time of a pair
+constexpr double kMostTilt = 3.0 * kGravitySigmaRad;
 constexpr int kLeastYaws = 60, kMostYaws = 480;
 
 /// Every n-th point, so that about `most` are left.
@@ -56,38 +54,6 @@ int yaw_steps(const std::vector<Vector3f>& points) {
   std::nth_element(ranges.begin(), far, ranges.end());
   const double steps = 2 * std::numbers::pi * static_cast<double>(*far) / double{kCellM};
   return std::clamp(static_cast<int>(std::ceil(steps)), kLeastYaws, kMostYaws);
-}
-
-bool same_pose(const SE3& a, const SE3& b) {
-  return (a.translation - b.translation).norm() < kSameM &&
-         so3::angle_between(a.rotation, b.rotation) < kSameRad;
-}
-
-/// A mode on its way to a candidate.
-struct Prospect {
-  SE3 T_map_body;  ///< of the mode
-  SE3 rough;       ///< refined with few points
-  double gridded_score = 0;
-  double share = 0;  ///< that agrees then
-
-  void take(const Refined& refined) {
-    rough = refined.T_map_body;
-    share = refined.usable ? refined.agreeing_share : 0;
-  }
-};
-
-/// Sorts by the share that agrees and leaves out copies of better ones.
-void keep_best(std::size_t most, std::vector<Prospect>& prospects) {
-  std::stable_sort(prospects.begin(), prospects.end(),
-                   [](const Prospect& a, const Prospect& b) { return a.share > b.share; });
-  std::vector<Prospect> kept;
-  for (const Prospect& prospect : prospects) {
-    const bool copy = std::any_of(kept.begin(), kept.end(), [&](const Prospect& other) {
-      return same_pose(prospect.rough, other.rough);
-    });
-    if (!copy && prospect.share > 0 && kept.size() < most) kept.push_back(prospect);
-  }
-  prospects = std::move(kept);
 }
 
 Sight sight_of(const SearchQuery& query, std::size_t most) {
@@ -216,8 +182,7 @@ Status GlobalSearch::Parts::look_closely(const Sight& sight, const std::vector<P
     const Refined refined = refiner.fully(sight, prospect.rough);
     const Vector3d down = refined.T_map_body.rotation.conjugate() * map.info().gravity_map;
     const double tilt = std::acos(std::clamp(down.normalized().dot(sight.gravity_body), -1.0, 1.0));
-    const double moved = (refined.T_map_body.translation - prospect.T_map_body.translation).norm();
-    if (!refined.usable || moved > kFarthestM || tilt > kMostTilt) continue;
+    if (!refined.usable || !prospect.leads_to(refined.T_map_body) || tilt > kMostTilt) continue;
     const bool copy = std::any_of(
         report.candidates.begin(), report.candidates.end(),
         [&](const Candidate& other) { return same_pose(refined.T_map_body, other.T_map_body); });

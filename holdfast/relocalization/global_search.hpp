@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 
 #include "holdfast/core/result.hpp"
 #include "holdfast/registration/correspondences.hpp"
@@ -11,13 +12,17 @@
 
 namespace holdfast::relocalization {
 
+/// Of the direction of gravity in a query, each axis: what find() takes for granted.
+constexpr double kGravitySigmaRad = std::numbers::pi / 180.0;
+
 /// What a robot sees that does not know where it is.
 struct SearchQuery {
   /// Deskewed returns of one or more scans, all of them in the body frame at the query's time, with
   /// ages against that time. Only rays of the newest 0.15 s are followed through the map. All
   /// returns or a part of them; a few thousand are enough.
   registration::BodyPoints points;
-  Eigen::Vector3d gravity_body = -Eigen::Vector3d::UnitZ();  ///< unit vector, downwards
+  /// Unit vector, downwards, to within kGravitySigmaRad.
+  Eigen::Vector3d gravity_body = -Eigen::Vector3d::UnitZ();
   Eigen::Vector3d p_body_lidar = Eigen::Vector3d::Zero();
   double range_sigma_m = 0.02;
 };

@@ -2,9 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
 #include <utility>
 
 namespace holdfast::pipeline {
+namespace {
+
+// What a pose that tracks on may be drawn to by itself.
+constexpr double kNearM = 0.3;
+constexpr double kNearRad = 3.0 * std::numbers::pi / 180.0;
+
+bool are_near(const SE3& a, const SE3& b) {
+  return (a.translation - b.translation).norm() < kNearM &&
+         so3::angle_between(a.rotation, b.rotation) < kNearRad;
+}
+
+}  // namespace
 
 RecoveringLocalizer::RecoveringLocalizer(std::unique_ptr<GraphLocalizer> graph, Loading search,
                                          const Setup& setup)
@@ -19,18 +32,20 @@ RecoveringLocalizer::~RecoveringLocalizer() = default;
 StepReport RecoveringLocalizer::add_scan(const Scan& scan) {
   auto ended = end_search(scan.end_time);
   StepReport report = graph_->add_scan(scan);
-  const bool was_lost = std::exchange(lost_, report.state == State::kLost || !graph_->has_pose());
-  if (lost_ && !was_lost) begin_anew();
+  const bool lost = report.state == State::kLost || !graph_->has_pose();
+  const bool doubted = std::exchange(in_doubt_, lost || report.state == State::kSuspect);
+  if (in_doubt_ && !doubted) begin_anew();
+  claimed_ = !lost;
+  T_map_body_ = report.T_map_body;
   const OdometryWitness& witness = *graph_->witness();
   if (witness.tells_motion()) window_.add(witness.odometry(), witness.epoch());
   report.search = std::move(ended);
-  if (!lost_) return report;
-  if (is_due(report.pose_time)) begin_search();
-  describe(report);
+  if (in_doubt_ && is_due(report.pose_time)) begin_search();
+  if (lost) describe(report);
   return report;
 }
 
-/// What was seen before the robot was lost may be of another place.
+/// What was seen before the pose came into doubt may be of another place.
 void RecoveringLocalizer::begin_anew() {
   window_.clear();
   confirmation_.reset();
@@ -47,7 +62,7 @@ std::shared_ptr<const SearchSummary> RecoveringLocalizer::end_search(TimeNs now)
       1e-9 * setup_.config.ns_per_lookup * static_cast<double>(answer.report.work);
   if (now < running_->t + from_seconds(latency_s)) return nullptr;
   SearchSummary summary = summary_of(answer, latency_s);
-  summary.accepted = lost_ && accept(answer.report);
+  summary.accepted = in_doubt_ && accept(answer.report);
   if (summary.accepted && searches_ > 1) {
     summary.reason = fmt::format("one pose stands after {} searches", searches_);
   }
@@ -70,7 +85,9 @@ bool RecoveringLocalizer::accept(const relocalization::SearchReport& report) {
   const auto sure = confirmation_.confirmed();
   if (!sure || witness.epoch() != running_->epoch) return false;
   const SE3 T_then_now = running_->T_odom_body.inverse() * witness.odometry().state().T_map_body;
-  graph_->place({sure->candidate.T_map_body * T_then_now, sure->candidate.covariance});
+  const SE3 T_map_body = sure->candidate.T_map_body * T_then_now;
+  if (claimed_ && are_near(T_map_body, T_map_body_)) return false;
+  graph_->place({T_map_body, sure->candidate.covariance});
   return true;
 }
 
@@ -89,8 +106,11 @@ SearchSummary RecoveringLocalizer::summary_of(const Answer& answer, double laten
   return summary;
 }
 
+/// A robot that is switched on while it drives takes its acceleration for a tilt of several degrees
+/// until the second or third scan. A search believes the direction of gravity.
 bool RecoveringLocalizer::is_due(TimeNs now) const {
-  return !running_ && window_.size() > 0 && window_.newest() == now && now >= not_before_;
+  return !running_ && window_.size() > 0 && window_.newest() == now && now >= not_before_ &&
+         graph_->witness()->odometry().gravity_sigma_rad() <= relocalization::kGravitySigmaRad;
 }
 
 void RecoveringLocalizer::begin_search() {

@@ -11,11 +11,12 @@
 
 namespace holdfast::pipeline {
 
-/// A graph that finds itself: without a pose at the start, and wherever it says that it is lost,
-/// the map is searched with the last scans (article 3.4.2), and the graph goes on from what is
-/// found, carried to now by the odometry. The search runs in a thread of its own and never holds up
-/// a step; it takes effect after a time that follows from its work, so that a replay gives the same
-/// bits whatever the machine (and waits for it there, if it is not done by then).
+/// A graph that finds itself: without a pose at the start, and wherever it says that its pose may
+/// be wrong, the map is searched with the last scans (article 3.4.2), and the graph goes on from
+/// what is found, carried to now by the odometry, unless it is there already. The search runs in a
+/// thread of its own and never holds up a step; it takes effect after a time that follows from its
+/// work, so that a replay gives the same bits whatever the machine (and waits for it there, if it
+/// is not done by then).
 class RecoveringLocalizer : public ScanLocalizer {
  public:
   struct Setup {
@@ -66,8 +67,10 @@ class RecoveringLocalizer : public ScanLocalizer {
   Setup setup_;
   ScanWindow window_;
   relocalization::Confirmation confirmation_;
-  bool lost_ = true;               ///< or not yet found
-  int searches_ = 0;               ///< since then, in this epoch of the odometry
+  bool in_doubt_ = true;           ///< the pose is not known, or may be wrong
+  SE3 T_map_body_;                 ///< as told last; meaningful where it was not LOST
+  bool claimed_ = false;           ///< it was not
+  int searches_ = 0;               ///< since it is, in this epoch of the odometry
   int epoch_ = 0;                  ///< of them
   TimeNs last_search_ = 0;         ///< its newest scan
   TimeNs not_before_ = 0;          ///< the next search
