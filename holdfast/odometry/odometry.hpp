@@ -60,6 +60,11 @@ class Odometry {
   /// not, the last reading is held and the report says for how long.
   OdometryReport add_scan(const Scan& scan);
 
+  /// Forgets all but the IMU's readings: the next scan is the first of a new epoch, with gravity
+  /// and biases unknown, as when it was switched on. For what it cannot know itself: that nothing
+  /// fits what it says.
+  void begin_anew();
+
   /// Whether edges tell the way where planes do not, at the price of 2 ms a scan there: at first
   /// they do.
   void use_edges(bool on) { edges_on_ = on; }

@@ -40,6 +40,13 @@ void set_sigma(FilterState& state, int offset, double sigma) {
 
 }  // namespace
 
+void Odometry::begin_anew() {
+  phase_ = Phase::kNothing;
+  rest_ = {};
+  biases_before_hold_.reset();
+  ++epoch_;
+}
+
 /// The attitude in which the readings up to the end of the first scan point against gravity.
 void Odometry::level(const Scan& scan) {
   imu_.segment(scan.end_time - kImuMemory, scan.end_time, segment_);

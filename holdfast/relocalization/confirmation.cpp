@@ -50,18 +50,17 @@ void Confirmation::hear(const SearchReport& report, const SE3& T_odom_body,
   last_T_odom_body_ = T_odom_body;
   any_ = true;
   for (Hypothesis& h : hypotheses_) h.seen_now = false;
-  double p_none = 1.0;
-  for (const Candidate& c : report.candidates) p_none -= c.probability;
+  const double p_none = report.p_none();
   for (const Candidate& c : report.candidates) {
     const SE3 T_map_odom = c.T_map_body * T_odom_body.inverse();
     Hypothesis* known = find(T_map_odom);
     if (known != nullptr && known->seen_now) continue;  // two modes of one pose: the better one
     if (known == nullptr) {
-      hypotheses_.push_back({T_map_odom, c, absent_log_odds_, true});
+      hypotheses_.push_back({T_map_odom, c, absent_log_odds_});
       known = &hypotheses_.back();
     }
     const double sum = known->log_odds + news * log_odds(c, p_none);
-    *known = {T_map_odom, c, std::min(sum, kMostLogOdds), true};
+    *known = {T_map_odom, c, std::min(sum, kMostLogOdds), true, report.fits(c)};
   }
   for (Hypothesis& h : hypotheses_) h.log_odds += h.seen_now ? 0.0 : news * kAbsent;
   absent_log_odds_ = std::max(absent_log_odds_ + news * kAbsent, kForgotten);
@@ -77,7 +76,8 @@ double Confirmation::probability(const Hypothesis& hypothesis) const {
 std::optional<Confirmed> Confirmation::confirmed() const {
   for (const Hypothesis& h : hypotheses_) {
     const double p = probability(h);
-    if (h.seen_now && p >= accept_probability_ && h.last.weakest_sigma_m <= kOpenSigmaM) {
+    const bool stands_alone = h.seen_now && h.fits_now;
+    if (stands_alone && p >= accept_probability_ && h.last.weakest_sigma_m <= kOpenSigmaM) {
       return Confirmed{h.last, p};
     }
   }

@@ -27,7 +27,9 @@ class Confirmation {
   /// odometry. Searches that gave up or had too little to go by say nothing.
   void hear(const SearchReport& report, const SE3& T_odom_body, double seconds_since_last);
 
-  /// The pose that is sure by now, if the last search saw it, and determined in every direction.
+  /// The pose that is sure by now, determined in every direction, and which the last search by
+  /// itself holds for 9 times as likely as none: searches with a window of scans that an odometry
+  /// put together wrongly are wrong together, and their words do not add up.
   std::optional<Confirmed> confirmed() const;
 
   void reset() { *this = Confirmation(accept_probability_); }
@@ -40,7 +42,8 @@ class Confirmation {
     SE3 T_map_odom;
     Candidate last;        ///< as a search last saw it
     double log_odds = 0;   ///< of all searches, against being elsewhere
-    bool seen_now = true;  ///< by the last search
+    bool seen_now = true;  ///< by the last search...
+    bool fits_now = true;  ///< ...which held it for likelier than none
   };
 
   Hypothesis* find(const SE3& T_map_odom);

@@ -51,6 +51,12 @@ struct SearchReport {
   std::vector<Candidate> candidates;  ///< the likeliest first; poses that coincide are one
   std::string reason;                 ///< a sentence, for people
   std::uint64_t work = 0;  ///< elementary look-ups: a deterministic measure of the time taken
+
+  /// That the pose is none of the candidates.
+  double p_none() const;
+  /// Does this search by itself hold the candidate for at least 9 times as likely as none of them?
+  bool fits(const Candidate& candidate) const;
+  bool any_fits() const;
 };
 
 }  // namespace holdfast::relocalization

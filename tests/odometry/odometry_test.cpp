@@ -223,6 +223,24 @@ TEST(Odometry, AJumpOfTheBiasesIsFoundAndTheWayStaysRight) {
   EXPECT_LT((odometry.state().accel_bias - kAccelJump).norm(), 0.2 * kAccelJump.norm());
 }
 
+TEST(Odometry, BegunAnewItIsAsIfSwitchedOn) {
+  const Journey rest;
+  Odometry odometry(setup());
+  for (int k = 0; k < 5; ++k) rest.step(odometry, k);
+  const double before = odometry.gravity_sigma_rad();
+  const int epoch = rest.step(odometry, 5).step.odom_epoch;
+  odometry.begin_anew();
+  const OdometryReport first = rest.step(odometry, 6);
+  EXPECT_EQ(first.step.odom_epoch, epoch + 1);
+  EXPECT_FALSE(first.increment);
+  EXPECT_EQ(first.step.T_map_body.translation.norm(), 0);
+  EXPECT_GT(odometry.gravity_sigma_rad(), 2 * before);
+  for (int k = 7; k < 20; ++k) {
+    const OdometryReport report = rest.step(odometry, k);
+    EXPECT_LT(report.step.T_map_body.translation.norm(), kDriftM) << "scan " << k;
+  }
+}
+
 TEST(Odometry, ABlackoutIsBridgedByTheImu) {
   Journey journey;
   journey.v_map = {0.5, 0.2, 0};

@@ -61,7 +61,7 @@ TEST(Confirmation, TheWayTellsThePlaceThatFollowsTheOdometry) {
   for (int metre = 0; metre < 10 && sure_at < 0; ++metre) {
     // Another place each time looks as good, as modes in a corridor do.
     const SE3 chance = {kThere.rotation, {40.0 + 3.0 * metre, 25, 0}};
-    several.hear(report({candidate(kHere, at(metre), 1.5), candidate(chance, at(metre), 1.5)}),
+    several.hear(report({candidate(kHere, at(metre), 2.5), candidate(chance, at(metre), 2.5)}),
                  at(metre), 1.0);
     if (several.confirmed()) sure_at = metre;
   }
@@ -71,6 +71,15 @@ TEST(Confirmation, TheWayTellsThePlaceThatFollowsTheOdometry) {
       (several.confirmed()->candidate.T_map_body.translation - kHere * at(sure_at).translation)
           .norm(),
       1e-12);
+}
+
+// A window of scans that was put together wrongly fits as badly each time.
+TEST(Confirmation, PosesThatFitBadlyAreNotSureHoweverOftenTheyAreSeen) {
+  Confirmation poor(kAccept);
+  for (int metre = 0; metre < 20; ++metre) {
+    poor.hear(report({candidate(kHere, at(metre), 1.5)}), at(metre), 1.0);
+    EXPECT_FALSE(poor.confirmed());
+  }
 }
 
 TEST(Confirmation, ARobotThatStandsDoesNotGrowSureOfAnything) {

@@ -40,6 +40,8 @@ class GraphLocalizer : public ScanLocalizer {
   /// Goes on from a pose that a search found. Call it between scans, and only with an odometry.
   void place(const Placement& found);
   bool has_pose() const { return placed_; }
+  /// Call it between scans, and only with an odometry.
+  void restart_odometry() { witness_->restart(); }
 
   const estimator::FixedLagSmoother& smoother() const { return smoother_; }
   /// Null if the odometry is switched off.

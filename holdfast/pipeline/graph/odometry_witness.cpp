@@ -55,6 +55,12 @@ void OdometryWitness::add_scan(const Scan& scan) {
   }
 }
 
+void OdometryWitness::restart() {
+  odometry_.begin_anew();
+  tells_motion_ = whole_ = false;
+  forget_map();
+}
+
 void OdometryWitness::forget_map() {
   older_.reset();
   newer_.reset();

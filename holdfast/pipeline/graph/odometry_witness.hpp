@@ -44,6 +44,9 @@ class OdometryWitness {
   /// What compare() was told is of another place.
   void forget_map();
 
+  /// The odometry begins anew: see there.
+  void restart();
+
   /// Did the odometry say of the newest scan that the robot was carried?
   bool broke() const { return broke_; }
 

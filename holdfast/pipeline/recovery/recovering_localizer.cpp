@@ -8,9 +8,11 @@
 namespace holdfast::pipeline {
 namespace {
 
-// What a pose that tracks on may be drawn to by itself.
-constexpr double kNearM = 0.3;
-constexpr double kNearRad = 3.0 * std::numbers::pi / 180.0;
+// From where a pose is drawn to the right one by itself, as an initial pose is.
+constexpr double kNearM = 1.0;
+constexpr double kNearRad = 10.0 * std::numbers::pi / 180.0;
+
+constexpr int kFruitless = 4;
 
 bool are_near(const SE3& a, const SE3& b) {
   return (a.translation - b.translation).norm() < kNearM &&
@@ -49,7 +51,8 @@ StepReport RecoveringLocalizer::add_scan(const Scan& scan) {
 void RecoveringLocalizer::begin_anew() {
   window_.clear();
   confirmation_.reset();
-  searches_ = 0;
+  searches_ = fruitless_ = 0;
+  alone_ = false;
   last_reason_.clear();
 }
 
@@ -67,9 +70,20 @@ std::shared_ptr<const SearchSummary> RecoveringLocalizer::end_search(TimeNs now)
     summary.reason = fmt::format("one pose stands after {} searches", searches_);
   }
   last_reason_ = summary.accepted ? "" : summary.reason;
+  if (in_doubt_ && !summary.accepted) count_fruitless(answer.report);
   not_before_ = now + from_seconds(setup_.config.retry_s);
   running_.reset();
   return std::make_shared<const SearchSummary>(std::move(summary));
+}
+
+/// Where no pose of the map fits what is seen, the odometry may be wrong that put it together, and
+/// about the direction of gravity. It begins anew.
+void RecoveringLocalizer::count_fruitless(const relocalization::SearchReport& report) {
+  if (report.candidates.empty()) return;
+  fruitless_ = report.any_fits() ? 0 : fruitless_ + 1;
+  if (fruitless_ < kFruitless) return;
+  graph_->restart_odometry();
+  begin_anew();
 }
 
 /// A pose belongs to the scan that was searched with; the odometry carries it to the newest one.
@@ -113,15 +127,18 @@ bool RecoveringLocalizer::is_due(TimeNs now) const {
          graph_->witness()->odometry().gravity_sigma_rad() <= relocalization::kGravitySigmaRad;
 }
 
+/// With the whole window and with the newest scan alone by turns: an odometry that went wrong puts
+/// a window together that fits nowhere.
 void RecoveringLocalizer::begin_search() {
   const OdometryWitness& witness = *graph_->witness();
-  relocalization::SearchQuery query = window_.query(witness.odometry(), setup_.p_body_lidar);
+  const std::size_t scans = std::exchange(alone_, !alone_) ? 1 : window_.size();
+  relocalization::SearchQuery query = window_.query(witness.odometry(), setup_.p_body_lidar, scans);
   query.range_sigma_m = setup_.range_sigma_m;
   Search search;
   search.t = window_.newest();
   search.T_odom_body = window_.T_odom_newest();
   search.epoch = window_.epoch();
-  search.scans = static_cast<int>(window_.size());
+  search.scans = static_cast<int>(scans);
   search.answer = std::async(std::launch::async,
                              [this, query = std::move(query)] { return this->search(query); });
   running_ = std::move(search);

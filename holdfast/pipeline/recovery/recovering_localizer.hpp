@@ -54,6 +54,7 @@ class RecoveringLocalizer : public ScanLocalizer {
 
   std::shared_ptr<const SearchSummary> end_search(TimeNs now);
   bool accept(const relocalization::SearchReport& report);
+  void count_fruitless(const relocalization::SearchReport& report);
   void begin_anew();
   SearchSummary summary_of(const Answer& answer, double latency_s) const;
   Answer search(const relocalization::SearchQuery& query);
@@ -72,6 +73,8 @@ class RecoveringLocalizer : public ScanLocalizer {
   bool claimed_ = false;           ///< it was not
   int searches_ = 0;               ///< since it is, in this epoch of the odometry
   int epoch_ = 0;                  ///< of them
+  int fruitless_ = 0;              ///< in a row, in which no pose of the map fits what is seen
+  bool alone_ = false;             ///< the next one is with the newest scan alone
   TimeNs last_search_ = 0;         ///< its newest scan
   TimeNs not_before_ = 0;          ///< the next search
   std::string last_reason_;        ///< of the search before

@@ -1,6 +1,8 @@
 #include "holdfast/pipeline/recovery/scan_window.hpp"
 
+#include <algorithm>
 #include <numbers>
+#include <span>
 
 namespace holdfast::pipeline {
 
@@ -26,11 +28,13 @@ void ScanWindow::add(const odometry::Odometry& odometry, int epoch) {
 }
 
 relocalization::SearchQuery ScanWindow::query(const odometry::Odometry& odometry,
-                                              const Eigen::Vector3d& p_body_lidar) const {
+                                              const Eigen::Vector3d& p_body_lidar,
+                                              std::size_t newest_scans) const {
   relocalization::SearchQuery query;
   query.p_body_lidar = p_body_lidar;
   query.gravity_body = (T_odom_newest().rotation.inverse() * odometry.gravity()).normalized();
-  for (const Seen& scan : scans_) {
+  const std::size_t first = scans_.size() - std::min(newest_scans, scans_.size());
+  for (const Seen& scan : std::span(scans_).subspan(first)) {
     const SE3 T_newest_body = T_odom_newest().inverse() * scan.T_odom_body;
     const Eigen::Matrix3f R = T_newest_body.rotation.toRotationMatrix().cast<float>();
     const Eigen::Vector3f p = T_newest_body.translation.cast<float>();

@@ -26,9 +26,9 @@ class ScanWindow {
   const SE3& T_odom_newest() const { return scans_.back().T_odom_body; }
   int epoch() const { return epoch_; }
 
-  /// All points, in the body frame of the newest scan.
+  /// The points of the `newest` scans, in the body frame of the newest one.
   relocalization::SearchQuery query(const odometry::Odometry& odometry,
-                                    const Eigen::Vector3d& p_body_lidar) const;
+                                    const Eigen::Vector3d& p_body_lidar, std::size_t newest) const;
 
  private:
   struct Seen {
