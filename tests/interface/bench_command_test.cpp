@@ -38,11 +38,21 @@ TEST(BenchCommand, DetectionJudgesBothDetectorsOnTheSameDrives) {
   std::filesystem::remove_all(scratch());
 }
 
+TEST(BenchCommand, RelocalizationTakesTheRobotAwayAndSwitchesItOn) {
+  const auto run = run_program(
+      "bench relocalization --scenario office --duration 12 --seeds 1:1 --out " + scratch());
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("| kidnap, as surveyed"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("| start, 20 % changed"), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.find("Not driven"), std::string::npos) << run.out;
+}
+
 TEST(BenchCommand, NamesTheBenchesWhenAskedForAnotherOne) {
   const auto run = run_program("bench speed --out " + scratch());
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.out.find("step, accuracy, scenarios, detection, regions, import"),
-            std::string::npos)
+  EXPECT_NE(
+      run.out.find("step, accuracy, scenarios, detection, relocalization, search, regions, import"),
+      std::string::npos)
       << run.out;
   EXPECT_FALSE(std::filesystem::exists(scratch()));
 }
