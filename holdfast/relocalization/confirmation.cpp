@@ -40,7 +40,7 @@ Confirmation::Hypothesis* Confirmation::find(const SE3& T_map_odom) {
 
 void Confirmation::hear(const SearchReport& report, const SE3& T_odom_body,
                         double seconds_since_last) {
-  if (report.outcome == SearchOutcome::kTooPoor || report.outcome == SearchOutcome::kOutOfWork) {
+  if (!report.any_fits()) {
     for (Hypothesis& h : hypotheses_) h.seen_now = false;
     return;
   }

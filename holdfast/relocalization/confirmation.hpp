@@ -24,7 +24,8 @@ class Confirmation {
   explicit Confirmation(double accept_probability) : accept_probability_(accept_probability) {}
 
   /// What a search found at `T_odom_body`; all since the last reset() are of one epoch of the
-  /// odometry. Searches that gave up or had too little to go by say nothing.
+  /// odometry. Searches that gave up, had too little to go by, or found no pose that fits say
+  /// nothing: what they do not see may still be there.
   void hear(const SearchReport& report, const SE3& T_odom_body, double seconds_since_last);
 
   /// The pose that is sure by now, determined in every direction, and which the last search by

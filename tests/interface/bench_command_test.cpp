@@ -41,7 +41,7 @@ TEST(BenchCommand, DetectionJudgesBothDetectorsOnTheSameDrives) {
 TEST(BenchCommand, RelocalizationTakesTheRobotAwayAndSwitchesItOn) {
   const auto run = run_program(
       "bench relocalization --scenario office --duration 12 --seeds 1:1 --out " + scratch());
-  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.exit_code, 0) << run.out;
   EXPECT_NE(run.out.find("| kidnap, as surveyed"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("| start, 20 % changed"), std::string::npos) << run.out;
   EXPECT_EQ(run.out.find("Not driven"), std::string::npos) << run.out;

@@ -50,7 +50,9 @@ TEST(PlaceNode, TheCovarianceIsOneAndWiderThanWhatWasKnown) {
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix18d>(P).eigenvalues().minCoeff(), 0.0);
   for (int i = 0; i < 15; ++i) {
     EXPECT_GT(P(i, i), turned.odometry.P(i, i)) << "of the odometry, " << i;
-    if (i < 6) EXPECT_GT(P(i, i), turned.found.covariance(i, i)) << "of the search, " << i;
+    if (i < 6) {
+      EXPECT_GT(P(i, i), turned.found.covariance(i, i)) << "of the search, " << i;
+    }
   }
 }
 
