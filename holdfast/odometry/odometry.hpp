@@ -2,29 +2,16 @@
 
 #include <optional>
 
-#include "holdfast/core/step_report.hpp"
 #include "holdfast/filter/rest.hpp"
 #include "holdfast/odometry/bias_jump.hpp"
 #include "holdfast/odometry/edges/edge_reference.hpp"
 #include "holdfast/odometry/gravity_estimate.hpp"
-#include "holdfast/odometry/increment.hpp"
 #include "holdfast/odometry/odometry_config.hpp"
+#include "holdfast/odometry/odometry_report.hpp"
 #include "holdfast/odometry/start/first_motion.hpp"
 #include "holdfast/preprocess/scan_selection.hpp"
 
 namespace holdfast::odometry {
-
-/// What came of one scan.
-struct OdometryReport {
-  /// With T_odom_body in place of T_map_body; sigmas are those of the drift since the epoch began.
-  StepReport step;
-  Eigen::Vector3d v_odom = Eigen::Vector3d::Zero();  ///< m/s, in the odometry's frame
-  /// Motion since the scan before; none for the first scan, and where the odometry broke in
-  /// between.
-  std::optional<Increment> increment;
-  bool broke = false;      ///< a new local map begins with this scan; step.odom_epoch has grown
-  bool corrected = false;  ///< the scan told the pose, not the IMU alone
-};
 
 /// LiDAR-inertial odometry: an iterated error-state filter with IMU prediction, matched to a local
 /// map of planes that it makes itself. It takes nothing from a prior map: as a witness it must not
