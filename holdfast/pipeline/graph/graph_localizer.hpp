@@ -39,6 +39,8 @@ class GraphLocalizer : public ScanLocalizer {
 
   /// Goes on from a pose that a search found. Call it between scans, and only with an odometry.
   void place(const Placement& found);
+  /// A search found the very pose that it has: what spoke against it is forgotten.
+  void confirm();
   bool has_pose() const { return placed_; }
   /// Call it between scans, and only with an odometry.
   void restart_odometry() { witness_->restart(); }

@@ -48,14 +48,18 @@ void GraphLocalizer::place(const Placement& found) {
   const PlacedNode node = place_node(found, witness_->odometry().state(), map_->info().gravity_map,
                                      setup_.graph.gravity_sigma_m_s2);
   smoother_.reset(node.x, node.P);
-  witness_->forget_map();
   witness_->take_motion();
-  if (setup_.monitor) health_.emplace(*setup_.monitor, setup_.places);
+  confirm();
   map_error_.setZero();
   few_told_.clear();
   before_hold_.reset();
   last_mapped_share_ = 1;
   placed_ = true;
+}
+
+void GraphLocalizer::confirm() {
+  witness_->forget_map();
+  if (setup_.monitor) health_.emplace(*setup_.monitor, setup_.places);
 }
 
 /// The first node is what the filter knows. It took gravity for known, so that what it holds for

@@ -12,11 +12,14 @@ namespace {
 constexpr double kNearM = 1.0;
 constexpr double kNearRad = 10.0 * std::numbers::pi / 180.0;
 
+// Of one and the same.
+constexpr double kSameM = 0.3;
+constexpr double kSameRad = 3.0 * std::numbers::pi / 180.0;
 constexpr int kFruitless = 4;
 
-bool are_near(const SE3& a, const SE3& b) {
-  return (a.translation - b.translation).norm() < kNearM &&
-         so3::angle_between(a.rotation, b.rotation) < kNearRad;
+bool are_within(double metres, double radians, const SE3& a, const SE3& b) {
+  return (a.translation - b.translation).norm() < metres &&
+         so3::angle_between(a.rotation, b.rotation) < radians;
 }
 
 }  // namespace
@@ -100,7 +103,8 @@ bool RecoveringLocalizer::accept(const relocalization::SearchReport& report) {
   if (!sure || witness.epoch() != running_->epoch) return false;
   const SE3 T_then_now = running_->T_odom_body.inverse() * witness.odometry().state().T_map_body;
   const SE3 T_map_body = sure->candidate.T_map_body * T_then_now;
-  if (claimed_ && are_near(T_map_body, T_map_body_)) return false;
+  if (claimed_ && are_within(kSameM, kSameRad, T_map_body, T_map_body_)) graph_->confirm();
+  if (claimed_ && are_within(kNearM, kNearRad, T_map_body, T_map_body_)) return false;
   graph_->place({T_map_body, sure->candidate.covariance});
   return true;
 }
