@@ -18,11 +18,12 @@ function(holdfast_module name)
   endif()
 endfunction()
 
-# holdfast_test(NAME [INTEGRATION] LINK target...): all .cpp below tests/NAME, as NAME_tests.
-# Label unit-NAME and target unit_tests (which the sanitizers run), or integration.
+# holdfast_test(NAME [INTEGRATION | UNSANITIZED] LINK target...): all .cpp below tests/NAME, as
+# NAME_tests. Label unit-NAME and target unit_tests (which the sanitizers run), integration, or, for
+# what no robot runs and takes long, offboard.
 add_custom_target(unit_tests)
 function(holdfast_test name)
-  cmake_parse_arguments(ARG "INTEGRATION" "" "LINK" ${ARGN})
+  cmake_parse_arguments(ARG "INTEGRATION;UNSANITIZED" "" "LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(NOT sources)
     return()
@@ -33,6 +34,8 @@ function(holdfast_test name)
   target_precompile_headers(${name}_tests REUSE_FROM test_headers)
   if(ARG_INTEGRATION)
     set(label integration)
+  elseif(ARG_UNSANITIZED)
+    set(label offboard)
   else()
     set(label unit-${name})
     add_dependencies(unit_tests ${name}_tests)
